@@ -55,6 +55,15 @@ TEST_F(CliCombine, MotionsOneAfterTheOtherAreOneClip) {
   EXPECT_THAT(clips(), ElementsAre("walk", "walk_run_walk"));
 }
 
+TEST_F(CliCombine, WhatIsTooShortIsToldOf) {
+  const Result longer = combine({"--crossfade", "9"});
+  ASSERT_EQ(longer.code, 0) << longer.error;
+  EXPECT_THAT(longer.error, HasSubstr("too short for a transition of 9 s"));
+  ASSERT_EQ(run({"convert", "walk.bvh", "-o", "short.bvh", "--trim", "0:0.1", "-q"}).code, 0);
+  EXPECT_THAT(combine({"--sequence"}, {"short.bvh", "walk.bvh"}).error, HasSubstr("for a transition of 0.3 s"));
+  EXPECT_THAT(combine({"--blend", "0.5"}, {"short.bvh", "walk.bvh"}).error, HasSubstr("differ by a factor of"));
+}
+
 TEST_F(CliCombine, WhatDoesNotGoTogetherIsOneLineAndLeavesNoFile) {
   const std::vector<std::string> before = files();
   EXPECT_THAT(combine({"--blend", "0.5", "--sequence"}).error, AllOf(HasSubstr("--blend"), HasSubstr("--sequence")));
@@ -62,10 +71,9 @@ TEST_F(CliCombine, WhatDoesNotGoTogetherIsOneLineAndLeavesNoFile) {
   EXPECT_THAT(combine({"--blend", "0:1:"}).error, HasSubstr("FROM:TO:COUNT"));
   EXPECT_THAT(combine({"--blend", "0:1:1"}).error, HasSubstr("count"));
   EXPECT_THAT(combine({"--crossfade", "0.3"}, {"walk.bvh", "run.bvh", "walk.bvh"}).error, HasSubstr("--sequence"));
-  EXPECT_THAT(combine({"--crossfade", "3"}).error, HasSubstr("cannot cross"));
   const Result alone = combine({"--blend", "0.5"}, {"walk.bvh"});
   expectOneLine(alone, 1);
-  EXPECT_THAT(alone.error, HasSubstr("two clips, not 1"));
+  EXPECT_THAT(alone.error, AllOf(HasSubstr("two clips, not 1"), HasSubstr("convert --clip")));
   EXPECT_EQ(files(), before);
 }
 

@@ -103,7 +103,10 @@ std::vector<RetargetedClip> addCombined(Asset& asset, const RetargetArguments& o
     motions.push_back(readMotion(file, reading));
     warnings.append(motions.back().warnings);
   }
-  return combineOnto(asset, motions, options.retarget, *options.combine);
+  asset.warnings = {};
+  std::vector<RetargetedClip> clips = combineOnto(asset, motions, options.retarget, *options.combine);
+  warnings.append(asset.warnings);
+  return clips;
 }
 
 // Adds all motions' clips; the map that is saved is that of the first motion.
@@ -134,10 +137,13 @@ std::vector<RetargetedClip> addMotions(Asset& asset, const RetargetArguments& op
 }
 
 std::vector<ClipEditReport> edit(Asset& asset, const RetargetArguments& options,
-                                 const std::vector<RetargetedClip>& clips) {
+                                 const std::vector<RetargetedClip>& clips, Warnings& warnings) {
   std::vector<std::string> names;
   for (const RetargetedClip& clip : clips) names.push_back(clip.name);
-  return editClips(asset, names, options.clipEdits.edits);
+  asset.warnings = {};
+  std::vector<ClipEditReport> reports = editClips(asset, names, options.clipEdits.edits);
+  warnings.append(asset.warnings);
+  return reports;
 }
 
 void tell(const RetargetArguments& options, const std::vector<RetargetedClip>& clips,
@@ -173,6 +179,7 @@ void runCharacters(RetargetArguments options) {
   for (const char* option : {"--save-map", "--blend", "--crossfade", "--sequence"}) {
     if (options.command->count(option) > 0) throw CLI::ValidationError(option, "is for one character");
   }
+  if (options.model.empty()) throw CLI::RequiredError("MOTIONS");
   options.motions.insert(options.motions.begin(), options.model);
   prepare(options);
   if (options.program) throw CLI::ValidationError("--method", "programs of yours retarget one character at a time");
@@ -188,6 +195,7 @@ void runCharacters(RetargetArguments options) {
 
 void runRetarget(RetargetArguments options) {
   if (options.characters.isGiven()) return runCharacters(std::move(options));
+  if (options.model.empty()) throw CLI::RequiredError("MODEL");
   if (options.motions.empty()) throw CLI::RequiredError("MOTIONS");
   prepare(options);
   TerminalProgress progress(options.common.quiet);
@@ -199,7 +207,7 @@ void runRetarget(RetargetArguments options) {
   Warnings warnings = asset.warnings;
   options.retarget.turn = standUpright(asset, warnings);
   const std::vector<RetargetedClip> clips = addMotions(asset, options, *progress, warnings);
-  const std::vector<ClipEditReport> edits = edit(asset, options, clips);
+  const std::vector<ClipEditReport> edits = edit(asset, options, clips, warnings);
   progress->stage("write");
   write(asset, options, clips, warnings);
   progress.finish();
@@ -257,7 +265,7 @@ void runAnimate(RetargetArguments options) {
     if (rigged || error.code() != ErrorCode::kUnsupported) throw;
     throw Error(error.code(), error.message(), error.where(), remedyFor(matches));
   }
-  const std::vector<ClipEditReport> edits = edit(asset, options, clips);
+  const std::vector<ClipEditReport> edits = edit(asset, options, clips, warnings);
   progress->stage("write");
   write(asset, options, clips, warnings);
   progress.finish();
@@ -326,9 +334,9 @@ void addOptions(CLI::App& command, const std::shared_ptr<RetargetArguments>& opt
 void addRetargetCommand(CLI::App& program) {
   auto options = std::make_shared<RetargetArguments>();
   CLI::App* command = program.add_subcommand("retarget", "Put motions onto a rigged character");
-  command->add_option("MODEL", options->model, "the rigged model, or a skeleton alone, such as a .bvh")->required();
+  command->add_option("MODEL", options->model, "the rigged model, or a skeleton alone, such as a .bvh");
   addOptions(*command, options);
-  command->get_option("MOTIONS")->required(false);  // MODEL is the first of them with --characters
+  command->get_option("MOTIONS")->required(false);  // MODEL is the first of them with --characters: looked at later
   options->characters.addTo(*command);
   command->footer(
       retargetHelp("  limber retarget hero.glb motions/*.bvh -o hero_all.glb\n"

@@ -137,8 +137,8 @@ double ContactTrack::firmness(std::size_t frame, std::size_t foot) const {
   return std::pow(kFreeFirmness, share * share);
 }
 
-std::vector<FootSpans::Span> ContactTrack::spans(std::size_t foot) const {
-  std::vector<FootSpans::Span> spans;
+std::vector<TimeSpan> ContactTrack::spans(std::size_t foot) const {
+  std::vector<TimeSpan> spans;
   bool wasPlanted = false;
   for (std::size_t f = 0; f < frames(); ++f) {
     const bool planted = at(f, foot).anchor != FootAnchor::kNone;

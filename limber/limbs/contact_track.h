@@ -17,6 +17,7 @@
 
 #include "limber/limbs/plant_detector.h"
 #include "limber/matching/retarget_setup.h"
+#include "limber/skeleton/time_span.h"
 
 namespace limber {
 
@@ -43,11 +44,8 @@ struct WatchedFoot {
 
 // While a foot of the source is planted.
 struct FootSpans {
-  Index foot = 0;  // WatchedFoot::ankle
-  struct Span {
-    double from = 0, to = 0;  // seconds, of its first and its last frame
-  };
-  std::vector<Span> planted;
+  Index foot = 0;                 // WatchedFoot::ankle
+  std::vector<TimeSpan> planted;  // from their first frames to their last ones
 };
 
 // Contacts frame after frame, without looking ahead; what the user says (RetargetOptions::contactEdits) counts more
@@ -102,7 +100,7 @@ class ContactTrack {
   // while it is planted. 0 where nothing holds it.
   double firmness(std::size_t frame, std::size_t foot) const;
   // While something holds it.
-  std::vector<FootSpans::Span> spans(std::size_t foot) const;
+  std::vector<TimeSpan> spans(std::size_t foot) const;
 
  private:
   struct Place {

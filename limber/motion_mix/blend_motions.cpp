@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "limber/core/error.h"
+#include "limber/motion_mix/hold_pose.h"
 #include "limber/motion_mix/joint_clock.h"
 #include "limber/motion_mix/mixed_frames.h"
 #include "limber/motion_mix/plant_mixed_feet.h"
@@ -19,6 +20,8 @@ namespace {
 constexpr double kMostFrames = 4e6;  // as retargetClip
 constexpr int kMostRepeats = 64;     // of a motion that loops
 constexpr double kSamePhase = 1e-6;
+// Strides a second grow fourfold from a stroll (0.55) to a sprint (2.2): beyond that no two are gaits of one body.
+constexpr double kMostRateRatio = 4;
 
 // What the blend plays: both motions, repeated where they loop, on one scale.
 struct Together {
@@ -89,7 +92,39 @@ Together playedTogether(MixMotion a, MixMotion b, double weight) {
     if (together.from < together.to) return together;
   }
   StridePhases whole = wholeOf(a, b);
-  return overCommonSpan(std::move(a), std::move(b), std::move(whole));
+  Together together = overCommonSpan(std::move(a), std::move(b), std::move(whole));
+  together.loops = aLoops && bLoops;
+  return together;
+}
+
+// How many times as fast the phase grows in the faster motion as in the slower one, on the whole.
+double rateRatio(const Together& together) {
+  const auto lasts = [&](const GaitPhase& phase) { return phase.when(together.to) - phase.when(together.from); };
+  const double ofA = lasts(together.phases.a), ofB = lasts(together.phases.b);
+  return std::max(ofA, ofB) / std::min(ofA, ofB);
+}
+
+void warnOfRates(const Together& together, double weight, Warnings& warnings) {
+  const double ratio = rateRatio(together);
+  if (ratio <= kMostRateRatio || weight == 0 || weight == 1) return;
+  warnings.add("unlike-rates",
+               fmt::format("steps of blended motions, or what they last where one has none, differ by a factor of "
+                           "{:.3g}: the slower motion is played too fast",
+                           ratio),
+               fmt::format("{}, {}", together.a.name(), together.b.name()));
+}
+
+// A pose has no speed that could be blended.
+void holdPoses(const MixBody& body, const Clip& a, const Clip& b, MixMotion& first, MixMotion& second) {
+  const bool aStill = isStill(a), bStill = isStill(b);
+  const auto heldAs = [&](const Clip& pose, const MixMotion& other) {
+    return MixMotion(body, heldPose(body.original(), pose, other.duration(), other.frameSeconds()));
+  };
+  if (aStill && (!bStill || first.duration() < second.duration())) {
+    first = heldAs(a, second);
+  } else if (bStill) {
+    second = heldAs(b, first);
+  }
 }
 
 // Frame by frame; the speed of both times `speed`.
@@ -120,16 +155,18 @@ double speedToClose(const Together& together, double weight, double frameSeconds
 }  // namespace
 
 ClipWithContacts blendMotions(const Skeleton& skeleton, const ClipWithContacts& a, const ClipWithContacts& b,
-                              const BlendOptions& options) {
+                              const BlendOptions& options, Warnings* warnings) {
   if (!(options.weight >= 0 && options.weight <= 1)) {
     throw Error(ErrorCode::kBadArgument, fmt::format("the weight of a blend is {:g}", options.weight), "",
                 "it is from 0 to 1");
   }
   const MixBody body(skeleton);
   MixMotion first(body, a), second(body, b);
+  holdPoses(body, a.clip, b.clip, first, second);
   const double frameSeconds =
       options.frameRate ? 1 / *options.frameRate : std::min(first.frameSeconds(), second.frameSeconds());
   const Together together = playedTogether(std::move(first), std::move(second), options.weight);
+  if (warnings) warnOfRates(together, options.weight, *warnings);
   const double speed = together.loops ? speedToClose(together, options.weight, frameSeconds) : 1;
   const std::vector<MixMoment> moments = playedMoments(together, options.weight, frameSeconds, speed);
   MixedFrames mixed = mixFrames(body, together.a, together.b, together.phases, moments, frameSeconds, together.start);

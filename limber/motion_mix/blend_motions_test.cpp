@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "limber/core/error.h"
+#include "limber/motion_mix/hold_pose.h"
 #include "limber/motion_mix/testing/sample_clip.h"
 #include "limber/skeleton/clip_edit.h"
 
@@ -116,6 +117,34 @@ TEST_F(BlendMotions, WhatHasNoFootfallsIsBlendedOverItsWhole) {
   Pose last = restPose(chain);
   sampleClip(both.clip, both.clip.duration(), last);
   EXPECT_NEAR(last.locals[2].rotation.angularDistance(Quat::Identity()), 0.6, 0.03);
+}
+
+TEST_F(BlendMotions, APoseIsHeldAsLongAsTheOtherLasts) {
+  for (const double seconds : {0.0, 0.1, 5.0}) {
+    SCOPED_TRACE(seconds);
+    const ClipWithContacts pose = heldPose(skeleton, sampleClip("idle").clip, seconds, 1 / 30.0);
+    Warnings warnings;
+    const Clip one = blendMotions(skeleton, walk, pose, {0.5, std::nullopt}, &warnings).clip;
+    EXPECT_NEAR(one.duration(), walk.clip.duration(), 1.0 / 60);
+    EXPECT_NEAR(speedOf(one), speedOf(walk.clip) / 2, 0.01 * speedOf(walk.clip));
+    EXPECT_TRUE(MixMotion(MixBody(skeleton), {one, {}}).loops());
+    EXPECT_NEAR(blended(pose, walk, 0.5).clip.duration(), walk.clip.duration(), 1.0 / 60);
+    EXPECT_TRUE(warnings.empty());
+  }
+  const ClipWithContacts pose = heldPose(skeleton, walk.clip, 0, 1 / 30.0);
+  EXPECT_EQ(blended(pose, pose, 0.5).clip.duration(), 0);
+}
+
+TEST_F(BlendMotions, OfWhatIsMuchFasterItIsWarned) {
+  const ClipWithContacts shortOne{trimClip(walk.clip, 0, 0.1), {}};
+  Warnings warnings;
+  blendMotions(skeleton, walk, run, {0.5, std::nullopt}, &warnings);
+  blendMotions(skeleton, walk, shortOne, {0, std::nullopt}, &warnings);
+  EXPECT_TRUE(warnings.empty());
+  blendMotions(skeleton, walk, shortOne, {0.5, std::nullopt}, &warnings);
+  ASSERT_EQ(warnings.items().size(), 1u);
+  EXPECT_EQ(warnings.items()[0].kind, "unlike-rates");
+  EXPECT_NE(warnings.items()[0].message.find("factor of 33"), std::string::npos) << warnings.items()[0].message;
 }
 
 TEST_F(BlendMotions, AWeightOutsideIsRefused) {

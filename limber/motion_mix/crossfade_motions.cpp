@@ -4,9 +4,13 @@
 #include <cmath>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "limber/core/error.h"
+#include "limber/motion_mix/hold_pose.h"
 #include "limber/motion_mix/plant_mixed_feet.h"
 #include "limber/motion_mix/transition.h"
+#include "limber/skeleton/motion.h"
 
 namespace limber {
 
@@ -41,24 +45,47 @@ MixedRange rangeOf(const MixedFrames& mixed, std::size_t begin, std::size_t end,
   return {begin > around ? begin - around : 0, std::min(frames, lifted + around), false};
 }
 
+// One that is still lasts long enough for the transitions at its sides, at the rate of the one beside it.
+ClipWithContacts heldForTransitions(const Skeleton& skeleton, std::span<const ClipWithContacts> motions, std::size_t i,
+                                    const CrossfadeOptions& options) {
+  const Clip& clip = motions[i].clip;
+  const double needed = (i == 0 || i + 1 == motions.size() ? 1 : 2) * options.seconds;
+  if (motions.size() == 1 || clip.duration() >= needed || !isStill(clip)) return motions[i];
+  const double rate = options.frameRate.value_or(denseFrameRateOf(motions[i == 0 ? 1 : i - 1].clip));
+  return heldPose(skeleton, clip, needed, 1 / rate);
+}
+
+void warnOfLength(double asked, double taken, const Clip& a, const Clip& b, Warnings& warnings) {
+  warnings.add("short-transitions",
+               fmt::format("a motion is too short for a transition of {:.3g} s, which takes {:.3g} s", asked, taken),
+               fmt::format("{}, {}", a.name, b.name));
+}
+
 }  // namespace
 
 ClipWithContacts crossfadeMotions(const Skeleton& skeleton, const ClipWithContacts& a, const ClipWithContacts& b,
-                                  const CrossfadeOptions& options) {
+                                  const CrossfadeOptions& options, Warnings* warnings) {
   const ClipWithContacts both[] = {a, b};
-  return joinMotions(skeleton, both, options).motion;
+  return joinMotions(skeleton, both, options, warnings).motion;
 }
 
 JoinedMotions joinMotions(const Skeleton& skeleton, std::span<const ClipWithContacts> motions,
-                          const CrossfadeOptions& options) {
+                          const CrossfadeOptions& options, Warnings* warnings) {
   if (motions.empty()) throw Error(ErrorCode::kBadArgument, "no motions to join");
   const MixBody body(skeleton);
-  JoinedMotions joined = {motions.front(), {{0, motions.front().clip.duration()}}};
-  for (const ClipWithContacts& next : motions.subspan(1)) {
-    const MixMotion a(body, joined.motion), b(body, next);
+  JoinedMotions joined;
+  joined.motion = heldForTransitions(skeleton, motions, 0, options);
+  joined.spans = {{0, joined.motion.clip.duration()}};
+  double most = options.seconds;  // that a transition takes: of a motion between two others half
+  for (std::size_t i = 1; i < motions.size(); ++i) {
+    // What is joined already begins as it should: the spans are those of its frames.
+    const MixMotion a(body, joined.motion, i > 1), b(body, heldForTransitions(skeleton, motions, i, options));
     const double frameSeconds =
         options.frameRate ? 1 / *options.frameRate : std::min(a.frameSeconds(), b.frameSeconds());
-    const Transition transition = findTransition(body, a, b, {options.seconds, frameSeconds, joined.spans.back().from});
+    const double half = i + 1 < motions.size() ? std::max(frameSeconds, b.duration() / 2) : options.seconds;
+    const Transition transition =
+        findTransition(body, a, b, {std::min({options.seconds, most, half}), frameSeconds, joined.spans.back().from});
+    most = half;
     const std::vector<MixMoment> moments = allMoments(transition, b.duration(), frameSeconds);
     MixedFrames mixed = mixFrames(body, a, b, transition.phases, moments, frameSeconds);
     const auto begin = static_cast<std::size_t>(std::round(*transition.moments.front().a / frameSeconds));
@@ -66,6 +93,9 @@ JoinedMotions joinMotions(const Skeleton& skeleton, std::span<const ClipWithCont
     joined.motion = {clipOf(skeleton, body.plain().original(mixed.frames), motions.front().clip.name),
                      mixed.plantedFeet(body)};
     const auto lasts = static_cast<double>(transition.moments.size() - 1) * frameSeconds;
+    if (warnings && lasts <= options.seconds - frameSeconds) {
+      warnOfLength(options.seconds, lasts, motions[i - 1].clip, motions[i].clip, *warnings);
+    }
     const double from = static_cast<double>(begin) * frameSeconds;
     joined.spans.back().to = from + lasts;
     joined.spans.push_back({from, joined.motion.clip.duration()});

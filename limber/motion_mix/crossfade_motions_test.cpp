@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "limber/core/error.h"
+#include "limber/motion_mix/hold_pose.h"
 #include "limber/motion_mix/testing/sample_clip.h"
 #include "limber/skeleton/clip_edit.h"
 #include "limber/skeleton/motion.h"
@@ -135,9 +136,59 @@ TEST_F(CrossfadeMotions, ATransitionMayLastNearlyAsLongAsAMotion) {
   }
 }
 
-TEST_F(CrossfadeMotions, ATransitionLongerThanAMotionIsRefused) {
-  EXPECT_THROW(crossfadeMotions(skeleton, walk, run, {2.5, std::nullopt}), Error);
+TEST_F(CrossfadeMotions, ATransitionIsNoLongerThanItsMotionsAndOfOneBetweenTwoTakesHalf) {
+  const ClipWithContacts brief{resampleClip(trimClip(walk.clip, 0, 0.2), 60), {}};
+  const auto join = [&](std::vector<ClipWithContacts> all, double seconds, std::vector<double> lengths) {
+    Warnings warnings;
+    const std::vector<TimeSpan> spans = joinMotions(skeleton, all, {seconds, std::nullopt}, &warnings).spans;
+    for (std::size_t i = 0; i < lengths.size(); ++i) {
+      EXPECT_NEAR(spans[i].to - spans[i + 1].from, lengths[i], 1.5 / 60) << i;
+    }
+    ASSERT_EQ(warnings.items().size(), 1u);
+    EXPECT_EQ(warnings.items()[0].kind, "short-transitions");
+    EXPECT_EQ(warnings.items()[0].count, lengths.size());
+  };
+  join({brief, walk}, 0.3, {0.2});
+  join({walk, brief}, 0.3, {0.2});
+  join({walk, brief, run}, 0.3, {0.1, 0.1});
+  join({walk, run}, 5, {std::min(walk.clip.duration(), run.clip.duration())});
+}
+
+TEST_F(CrossfadeMotions, TwoFramesAreEnough) {
+  const ClipWithContacts two{resampleClip(trimClip(walk.clip, 0, 1.0 / 30), 30), {}};
+  const std::vector<std::vector<ClipWithContacts>> rows = {{two, walk}, {walk, two}, {walk, two, run}, {two, two, two}};
+  for (const std::vector<ClipWithContacts>& row : rows) {
+    for (const double rate : {30.0, 60.0}) EXPECT_NO_THROW(joinMotions(skeleton, row, {0.3, rate}));
+  }
+}
+
+// As where retargeting has spread the T-pose at the beginning of a recording over several frames.
+TEST_F(CrossfadeMotions, OneFirstPoseIsLeftOutHoweverManyAreJoined) {
+  ClipWithContacts jumps = walk;
+  for (Track<Vec3f>& track : jumps.clip.translations) {
+    if (track.joint == 0) track.values[0].y() += 4, track.values[1].y() += 2;
+  }
+  const ClipWithContacts all[] = {jumps, walk, walk};
+  const Clip one = crossfadeMotions(skeleton, jumps, walk).clip, two = joinMotions(skeleton, all).motion.clip;
+  const auto ofOne = jointPaths(skeleton, one), ofTwo = jointPaths(skeleton, two);
+  for (std::size_t f = 0; f < 60; ++f) ASSERT_LT((ofOne[f][0] - ofTwo[f][0]).norm(), 1e-4) << f;
+}
+
+TEST_F(CrossfadeMotions, APoseIsHeldForItsTransitions) {
+  const ClipWithContacts pose = heldPose(skeleton, sampleClip("idle").clip, 0, 1 / 30.0);
+  const std::vector<std::vector<ClipWithContacts>> rows = {{pose, walk}, {walk, pose}, {walk, pose, run}, {pose, pose}};
+  for (const std::vector<ClipWithContacts>& row : rows) {
+    Warnings warnings;
+    const auto [joined, spans] = joinMotions(skeleton, row, {0.3, std::nullopt}, &warnings);
+    EXPECT_TRUE(warnings.empty());
+    for (std::size_t i = 0; i + 1 < row.size(); ++i) EXPECT_NEAR(spans[i].to - spans[i + 1].from, 0.3, 1e-6) << i;
+    checkClip(joined.clip, skeleton);
+  }
+}
+
+TEST_F(CrossfadeMotions, ATransitionOfLessThanAFrameIsRefused) {
   EXPECT_THROW(crossfadeMotions(skeleton, walk, run, {0, std::nullopt}), Error);
+  EXPECT_THROW(crossfadeMotions(skeleton, walk, run, {std::nan(""), std::nullopt}), Error);
   EXPECT_THROW(joinMotions(skeleton, {}), Error);
 }
 

@@ -70,13 +70,13 @@ double swayAt(const std::vector<double>& sways, double frame) {
 
 }  // namespace
 
-MixMotion::MixMotion(const MixBody& body, const ClipWithContacts& motion)
+MixMotion::MixMotion(const MixBody& body, const ClipWithContacts& motion, bool keepAll)
     : body_(&body), name_(motion.clip.name), feet_(motion.feet) {
   checkClip(motion.clip, body.original());
   frames_ = body.plain().plain(sampleFrames(body.original(), motion.clip, denseFrameRateOf(motion.clip)));
   if (feet_.empty()) feet_ = plantedFeet(body.setup(), frames_);
   feet_ = steadied(std::move(feet_));
-  leaveOutFirstPose();
+  if (!keepAll) leaveOutFirstPose();
   readSteps();
 }
 
@@ -88,16 +88,16 @@ void MixMotion::leaveOutFirstPose() {
   if (!isCut(body_->setup(), first.positions, second.positions, frames_.frameSeconds)) return;
   frames_.poses.erase(frames_.poses.begin());
   for (FootSpans& foot : feet_) {
-    std::erase_if(foot.planted, [&](const FootSpans::Span& span) { return span.to < frames_.frameSeconds; });
-    for (FootSpans::Span& span : foot.planted) {
+    std::erase_if(foot.planted, [&](const TimeSpan& span) { return span.to < frames_.frameSeconds; });
+    for (TimeSpan& span : foot.planted) {
       span = {std::max(0.0, span.from - frames_.frameSeconds), span.to - frames_.frameSeconds};
     }
   }
 }
 
-std::vector<FootSpans::Span> MixMotion::planted(Index foot) const {
+std::vector<TimeSpan> MixMotion::planted(Index foot) const {
   const auto found = std::find_if(feet_.begin(), feet_.end(), [&](const FootSpans& of) { return of.foot == foot; });
-  return found == feet_.end() ? std::vector<FootSpans::Span>() : found->planted;
+  return found == feet_.end() ? std::vector<TimeSpan>() : found->planted;
 }
 
 void MixMotion::sample(double seconds, Pose& pose) const {
@@ -159,8 +159,8 @@ MixMotion MixMotion::repeated(int times) const {
       result.frames_.poses.push_back(std::move(pose));
     }
     for (std::size_t f = 0; f < feet_.size(); ++f) {
-      std::vector<FootSpans::Span>& spans = result.feet_[f].planted;
-      for (const FootSpans::Span& span : feet_[f].planted) {
+      std::vector<TimeSpan>& spans = result.feet_[f].planted;
+      for (const TimeSpan& span : feet_[f].planted) {
         const double from = i * length + span.from, to = i * length + span.to;
         if (!spans.empty() && from - spans.back().to < 1.5 * frames_.frameSeconds) {
           spans.back().to = to;

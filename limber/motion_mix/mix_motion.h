@@ -14,9 +14,9 @@ class MixMotion {
  public:
   // The clip at its own rate (denseFrameRateOf), and when its feet are planted (plantedFeet), by the joints of the
   // body's legs; without any, they are read off the clip. A first frame from which it jumps, as the T-pose that some
-  // recordings begin with, is left out, and scales that change are not kept. The body must outlive this. Throws as
-  // checkClip and sampleFrames do.
-  MixMotion(const MixBody& body, const ClipWithContacts& motion);
+  // recordings begin with, is left out unless all frames are to be kept, and scales that change are not kept. The
+  // body must outlive this. Throws as checkClip and sampleFrames do.
+  MixMotion(const MixBody& body, const ClipWithContacts& motion, bool keepAll = false);
 
   const std::string& name() const { return name_; }
   double duration() const { return static_cast<double>(frames_.poses.size() - 1) * frames_.frameSeconds; }
@@ -24,7 +24,7 @@ class MixMotion {
   const std::vector<FootSpans>& feet() const { return feet_; }
   const std::vector<Footfall>& footfalls() const { return footfalls_; }
   // While that foot of the body's legs is planted.
-  std::vector<FootSpans::Span> planted(Index foot) const;
+  std::vector<TimeSpan> planted(Index foot) const;
 
   // The pose at a moment (PoseCurve).
   void sample(double seconds, Pose& pose) const;

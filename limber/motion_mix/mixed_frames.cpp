@@ -39,9 +39,9 @@ struct PairedSpan {
   PhaseSpan a, b;
 };
 
-std::vector<PhaseSpan> phasesOf(const std::vector<FootSpans::Span>& spans, const GaitPhase& phase) {
+std::vector<PhaseSpan> phasesOf(const std::vector<TimeSpan>& spans, const GaitPhase& phase) {
   std::vector<PhaseSpan> phases;
-  for (const FootSpans::Span& span : spans) phases.push_back({phase.at(span.from), phase.at(span.to)});
+  for (const TimeSpan& span : spans) phases.push_back({phase.at(span.from), phase.at(span.to)});
   return phases;
 }
 
@@ -72,9 +72,9 @@ bool isWithin(const PairedSpan& pair, double phase, double weight) {
   return std::lerp(pair.a.from, pair.b.from, weight) <= phase && phase <= std::lerp(pair.a.to, pair.b.to, weight);
 }
 
-bool isDuring(const std::vector<FootSpans::Span>& spans, double seconds) {
+bool isDuring(const std::vector<TimeSpan>& spans, double seconds) {
   return std::any_of(spans.begin(), spans.end(),
-                     [&](const FootSpans::Span& span) { return span.from <= seconds && seconds <= span.to; });
+                     [&](const TimeSpan& span) { return span.from <= seconds && seconds <= span.to; });
 }
 
 class Mixer {
@@ -130,7 +130,7 @@ class Mixer {
  private:
   using MaybePart = std::optional<PartFrame>;
 
-  PartFrame partAt(const MixMotion& motion, const std::vector<std::vector<FootSpans::Span>>& spans, double seconds) {
+  PartFrame partAt(const MixMotion& motion, const std::vector<std::vector<TimeSpan>>& spans, double seconds) {
     PartFrame part;
     motion.sample(seconds, part.pose);
     body_.globals(part.pose, frame_);
@@ -237,8 +237,8 @@ class Mixer {
   const StridePhases& phases_;
   LimbReach reach_;
   std::vector<Leg> legs_;
-  std::vector<std::vector<FootSpans::Span>> spansOfA_, spansOfB_;  // of each leg
-  std::vector<std::vector<PairedSpan>> pairs_;                     // likewise
+  std::vector<std::vector<TimeSpan>> spansOfA_, spansOfB_;  // of each leg
+  std::vector<std::vector<PairedSpan>> pairs_;              // likewise
   BodyFrame frame_;
 };
 

@@ -12,19 +12,19 @@ namespace {
 // Contacts of a sprinter's foot take 0.08 s and more, and its flight longer (Novacheck 1998).
 constexpr double kShortestPhase = 0.06;
 
-using Spans = std::vector<FootSpans::Span>;
+using Spans = std::vector<TimeSpan>;
 
 // Gaps that are too short close, then spans that are too short go.
 Spans steadySpans(const Spans& spans) {
   Spans steady;
-  for (const FootSpans::Span& span : spans) {
+  for (const TimeSpan& span : spans) {
     if (!steady.empty() && span.from - steady.back().to < kShortestPhase) {
       steady.back().to = span.to;
     } else {
       steady.push_back(span);
     }
   }
-  std::erase_if(steady, [](const FootSpans::Span& span) { return span.to - span.from < kShortestPhase; });
+  std::erase_if(steady, [](const TimeSpan& span) { return span.to - span.from < kShortestPhase; });
   return steady;
 }
 

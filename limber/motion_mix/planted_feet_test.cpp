@@ -16,7 +16,7 @@ TEST(PlantedFeet, AreThoseOfTheTarget) {
   // The walk's feet take turns, half a second each.
   for (const FootSpans& foot : feet) {
     double planted = 0;
-    for (const FootSpans::Span& span : foot.planted) planted += span.to - span.from;
+    for (const TimeSpan& span : foot.planted) planted += span.to - span.from;
     EXPECT_NEAR(planted, 1, 0.25);
   }
 }

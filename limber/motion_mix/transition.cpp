@@ -35,7 +35,7 @@ class SeenFrames {
   SeenFrames(const MixBody& body, const MixMotion& motion, double from, double to, double frameSeconds)
       : from_(from), step_(frameSeconds) {
     const auto frames = static_cast<std::size_t>(std::floor((to - from) / frameSeconds + kMoment)) + 1;
-    std::vector<std::vector<FootSpans::Span>> spans;
+    std::vector<std::vector<TimeSpan>> spans;
     for (const Leg& leg : body.legs()) spans.push_back(motion.planted(leg.end));
     for (std::size_t f = 0; f < frames; ++f) {
       const double now = from + static_cast<double>(f) * frameSeconds;
@@ -47,8 +47,8 @@ class SeenFrames {
       const std::vector<Vec3> moved = placesAt(body, motion, other, ground);
       const double share = (isLast ? -kForeseen : kForeseen) / frameSeconds;
       for (std::size_t j = 0; j < moved.size(); ++j) seen.ahead[j] += share * (moved[j] - seen.places[j]);
-      for (const std::vector<FootSpans::Span>& of : spans) {
-        seen.planted.push_back(std::any_of(of.begin(), of.end(), [&](const FootSpans::Span& span) {
+      for (const std::vector<TimeSpan>& of : spans) {
+        seen.planted.push_back(std::any_of(of.begin(), of.end(), [&](const TimeSpan& span) {
           return span.from <= now + kMoment && now <= span.to + kMoment;
         }));
       }
@@ -120,7 +120,9 @@ class TransitionSearch {
     const double reach = std::min(kReach, (a_.duration() - options.from - options.seconds) / 2);
     const double lasts = static_cast<double>(frames_) * frameSeconds_;
     const double first = std::floor((a_.duration() - lasts - reach) / frameSeconds_ + kMoment);
-    return std::max(first, options.from > 0 ? std::floor(options.from / frameSeconds_ + kMoment) + 1 : 0);
+    if (options.from <= 0) return std::max(first, 0.0);
+    const double latest = std::floor((a_.duration() - lasts) / frameSeconds_ + kMoment);
+    return std::max(first, std::min(latest, std::floor(options.from / frameSeconds_ + kMoment) + 1));
   }
 
   // Each at its own speed: a phase is a second.
@@ -183,19 +185,22 @@ class TransitionSearch {
 
 Transition findTransition(const MixBody& body, const MixMotion& a, const MixMotion& b,
                           const TransitionOptions& options) {
-  const double own = a.duration() - options.from, shortest = std::min(own, b.duration());
-  const auto refusal = [&](std::string hint) {
-    return Error(
-        ErrorCode::kBadArgument,
-        fmt::format("motions of {:.3g} and {:.3g} s cannot cross within {:.3g} s", own, b.duration(), options.seconds),
-        fmt::format("{}, {}", a.name(), b.name()), std::move(hint));
+  const double step = options.frameSeconds, shortest = std::min(a.duration() - options.from, b.duration());
+  const auto refusal = [&](std::string message, std::string hint) {
+    return Error(ErrorCode::kBadArgument, std::move(message), fmt::format("{}, {}", a.name(), b.name()),
+                 std::move(hint));
   };
-  if (!(options.seconds >= options.frameSeconds) || !(options.seconds < shortest)) {
-    throw refusal(fmt::format("a transition takes more than one frame and less than {:.3g} s", shortest));
+  if (!(options.seconds >= step)) {
+    throw refusal(fmt::format("a transition of {:.3g} s is shorter than a frame", options.seconds),
+                  fmt::format("choose one of {:.3g} s or more", step));
   }
-  std::optional<Transition> found = TransitionSearch(body, a, b, options).run();
-  if (!found) throw refusal("choose a shorter transition");
-  return std::move(*found);
+  // What fits but for the frames of either may not fit with them.
+  TransitionOptions shorter = options;
+  shorter.seconds = std::min(options.seconds, shortest);
+  for (; shorter.seconds > step - kMoment; shorter.seconds -= step) {
+    if (std::optional<Transition> found = TransitionSearch(body, a, b, shorter).run()) return std::move(*found);
+  }
+  throw refusal(fmt::format("a motion of {:.3g} s is too short for a transition", shortest), "leave it out");
 }
 
 }  // namespace limber

@@ -21,7 +21,7 @@ void checkCount(std::size_t clips, bool blends) {
   throw Error(
       ErrorCode::kBadArgument,
       fmt::format("{} {}", blends ? "a blend takes two clips, not" : "a sequence takes two clips or more, not", clips),
-      "", "a file with several clips counts as so many motions");
+      "", "a file with several clips counts as so many motions: limber convert --clip NAME takes one out of it");
 }
 
 std::string namesOfAll(const std::vector<ClipWithContacts>& clips) {
@@ -31,15 +31,15 @@ std::string namesOfAll(const std::vector<ClipWithContacts>& clips) {
 }
 
 std::vector<ClipWithContacts> combined(const Skeleton& skeleton, const std::vector<ClipWithContacts>& clips,
-                                       const CombineOptions& options) {
+                                       const CombineOptions& options, Warnings& warnings) {
   const std::string names = namesOfAll(clips);
   std::vector<ClipWithContacts> made;
   if (options.blendWeights.empty()) {
-    made.push_back(joinMotions(skeleton, clips, {options.crossfadeSeconds, std::nullopt}).motion);
+    made.push_back(joinMotions(skeleton, clips, {options.crossfadeSeconds, std::nullopt}, &warnings).motion);
     made.back().clip.name = names;
   }
   for (const double weight : options.blendWeights) {
-    made.push_back(blendMotions(skeleton, clips[0], clips[1], {weight, std::nullopt}));
+    made.push_back(blendMotions(skeleton, clips[0], clips[1], {weight, std::nullopt}, &warnings));
     made.back().clip.name = fmt::format("{}_{:.2f}", names, weight);
   }
   return made;
@@ -64,7 +64,7 @@ std::vector<RetargetedClip> combineOnto(Asset& asset, std::span<const Motion> mo
   const AssetSkeleton character = animatedSkeleton(asset);
   std::vector<Clip> added;
   std::vector<RetargetedClip> reports;
-  for (ClipWithContacts& one : combined(character.skeleton, clips, combine)) {
+  for (ClipWithContacts& one : combined(character.skeleton, clips, combine, asset.warnings)) {
     RetargetedClip& report = reports.emplace_back(*first);
     report.framesPerSecond = frameRateOf(one.clip);
     report.frames = frameCount(one.clip, report.framesPerSecond);

@@ -15,8 +15,9 @@ struct CombineOptions {
 
 // Each motion goes onto the character as retargetOnto takes it there, then they are combined. The clips that are added
 // are the combined ones alone, called "walk_run_0.40" by the weight, or "walk_run_jump". Reports are those of the first
-// motion, but for names, frames and rates. Throws as retargetOnto, blendMotions and joinMotions do, and Error
-// kBadArgument where the motions have not as many clips: two for a blend, two or more else.
+// motion, but for names, frames and rates. What blendMotions and joinMotions warn of is added to the asset's warnings.
+// Throws as retargetOnto, blendMotions and joinMotions do, and Error kBadArgument where the motions have not as many
+// clips: two for a blend, two or more else.
 std::vector<RetargetedClip> combineOnto(Asset& asset, std::span<const Motion> motions,
                                         const RetargetAssetOptions& options, const CombineOptions& combine);
 

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <span>
-#include <utility>
 #include <vector>
 
 #include "limber/core/rotation.h"
@@ -14,39 +12,15 @@
 #include "limber/limbs/hand_goals.h"
 #include "limber/limbs/limb_reach.h"
 #include "limber/retarget/displacement_curve.h"
-#include "limber/retarget/moved_legs.h"
+#include "limber/retarget/foot_planting.h"
 
 namespace limber {
 
 namespace {
 
-// Seconds in which changes come and go: of the pelvis and of legs' bones, the same of foot-driven legs, of which little
-// is left to change, of feet's twists, of hands.
-constexpr double kChangeSeconds = 0.06, kFootDrivenSeconds = 0.13, kTwistSeconds = 0.05, kHandSeconds = 0.12;
-constexpr double kHold = 1e5;            // of a planted foot's speed along the ground (hip heights a second), squared
-constexpr double kTwistHold = 1e8;       // of its turn from frame to frame, radians, squared
+// Seconds in which changes come and go: of foot-driven legs, of which little is left to change, of hands.
+constexpr double kFootDrivenSeconds = 0.13, kHandSeconds = 0.12;
 constexpr double kFootDrivenRest = 0.1;  // how firmly a foot-driven foot keeps its height, 0 to 1
-// Hip heights, over which it is seen how bones follow a foot: without the kink of legs that are nearly straight.
-constexpr double kBoneProbe = 0.2;
-constexpr double kStretched = 0.995;   // of its length to which a planted leg stretches: straight knees tremble
-constexpr double kAheadSeconds = 0.5;  // that each part sees of the next
-
-// ChangeWeights: the pelvis rises and sinks freely, so that legs keep their bend; it hardly goes aside. A foot has no
-// place of its own: its leg's bones tell where it is to be.
-constexpr double kPelvisLevel = 10, kPelvisUp = 0.02, kFeet = 0.02, kBones = 1, kRest = 3e4;
-constexpr int kRounds = 8;
-
-ChangeWeights planting(double frameSeconds) {
-  ChangeWeights weights;
-  weights.pelvisLevel = kPelvisLevel;
-  weights.pelvisUp = kPelvisUp;
-  weights.feet = kFeet;
-  weights.bones = kBones;
-  weights.hold = kHold / (frameSeconds * frameSeconds);
-  weights.rest = kRest;
-  weights.rounds = kRounds;
-  return weights;
-}
 
 Vec3 level(const Vec3& v) {
   return {v.x(), 0, v.z()};
@@ -105,7 +79,7 @@ class Spacetime {
     if (setup_.options.contacts) {
       gatherFeet();
       twistFeet();
-      plantFeet();
+      plantLegs();
       layToes();
     }
     placeHands();
@@ -175,9 +149,9 @@ class Spacetime {
         if (!contacts_->at(f, i).flat || !contacts_->at(f - 1, i).flat) continue;
         const Vec3 from = level(foot[f - 1].roll), to = level(foot[f].roll);
         twist[f].step = -std::atan2(from.cross(to).y(), from.dot(to));
-        twist[f].stepWeight = kTwistHold * contacts_->firmness(f, i);
+        twist[f].stepWeight = planting::kTwistHold * contacts_->firmness(f, i);
       }
-      const std::vector<double> turns = displacementCurve(twist, target_.frameSeconds, {kTwistSeconds});
+      const std::vector<double> turns = displacementCurve(twist, target_.frameSeconds, {planting::kTwistSeconds});
       for (std::size_t f = 0; f < frames(); ++f) twists_[f][i] = turns[f];
     }
   }
@@ -200,7 +174,7 @@ class Spacetime {
     asked.height = std::max(leg.footDriven ? 0 : unit * (byToes ? toesUp : ankleUp), asked.lowest);
     asked.rest = leg.footDriven ? kFootDrivenRest : contacts_->firmness(f, i);
     asked.way = unit * (now.ankle - to.positions[leg.upper]);
-    asked.most = unit * kStretched * leg.length;
+    asked.most = unit * planting::kStretched * leg.length;
     if (anchor == FootAnchor::kNone) asked.most = std::max(asked.most, asked.way.norm());
     if (trunk().isFore(leg.upper)) asked.lift = TrunkTilt::liftOf(trunk().trunkOf(to));
     if (f == 0 || anchor == FootAnchor::kNone || contacts_->at(f - 1, i).anchor == FootAnchor::kNone) return asked;
@@ -212,63 +186,20 @@ class Spacetime {
 
   const TrunkTilt& trunk() const { return goals_.pelvis().trunk(); }
 
-  void plantFeet() {
+  void plantLegs() {
     if (feet_.empty()) return;
-    const auto ahead = static_cast<std::size_t>(std::round(kAheadSeconds / target_.frameSeconds));
-    const std::size_t parts = (frames() + kPartFrames - 1) / kPartFrames;
-    Part before;
-    for (std::size_t i = 0; i < parts; ++i) {
-      Part part;
-      part.first = i * frames() / parts;
-      part.begin = i == 0 ? 0 : part.first - kJoinedFrames;
-      part.end = (i + 1) * frames() / parts;
-      part.seen = std::min(frames(), part.end + ahead);
-      plantPart(before, part);
-      before = std::move(part);
-    }
-  }
-
-  // Frames [first, end), seen with those from `begin` up to `seen`; the changes of all these.
-  struct Part {
-    std::size_t begin = 0, first = 0, end = 0, seen = 0;
-    Changes changes;
-  };
-
-  void plantPart(const Part& before, Part& part) {
-    MovedLegs moved(setup_, root_, trunk(), goals_.legs());
-    const ChangeLayout layout = moved.layoutOf(part.seen - part.begin);
-    moved.solveAll(true);
-    std::vector<FootFrame> asked;
-    for (std::size_t f = part.begin; f < part.seen; ++f) {
-      const BodyFrame& to = f < part.first ? knownFrames_[f - part.begin] : targetAt(f);
-      moved.add(to);
-      for (std::size_t i = 0; i < feet_.size(); ++i) asked.push_back(askedOf(i, f, to));
-    }
-    MotionEnds ends;
-    if (part.begin < part.first) {
-      ends.startsJoined = true;
-      const std::span known(before.changes);
-      const auto changes =
-          known.subspan((part.begin - before.begin) * layout.perFrame(), kJoinedFrames * layout.perFrame());
-      ends.start.assign(changes.begin(), changes.end());
-    }
-    // Paths of nothing: what counts is what the changes make of them.
-    ChangedMotion now;
-    now.changes.assign(layout.frames() * layout.perFrame(), 0.0);
-    now.paths.assign(1 + 2 * feet_.size(), Path(layout.frames(), Vec3(Vec3::Zero())));
-    moved.findSlopes(layout, kBoneProbe, now);
-    const auto cut = cuts_.begin() + static_cast<std::ptrdiff_t>(part.begin);
-    LeastChanges least(layout, std::move(asked), {cut, cut + static_cast<std::ptrdiff_t>(layout.frames())}, ends,
-                       planting(target_.frameSeconds));
-    least.start(now);
-    const double seconds = anyFootDriven(goals_.legs()) ? kFootDrivenSeconds : kChangeSeconds;
-    part.changes = least.find(smoothnessWeight(seconds, target_.frameSeconds));
-    knownFrames_.clear();
-    for (std::size_t f = part.end - std::min(kJoinedFrames, part.end); f < part.end; ++f)
-      knownFrames_.push_back(targetAt(f));
-    for (std::size_t f = part.first; f < part.end; ++f) {
-      moved.pose(layout, part.changes, f - part.begin, target_.poses[f], twists_[f]);
-    }
+    MovedLegs legs(setup_, root_, trunk(), goals_.legs());
+    legs.solveAll(true);
+    FootPlanting planting;
+    planting.end = frames();
+    planting.frameSeconds = target_.frameSeconds;
+    if (anyFootDriven(goals_.legs())) planting.changeSeconds = kFootDrivenSeconds;
+    planting.cuts = cuts_;
+    planting.frameAt = [&](std::size_t f) -> const BodyFrame& { return targetAt(f); };
+    planting.askedOf = [&](std::size_t f, std::size_t leg, const BodyFrame& to) { return askedOf(leg, f, to); };
+    planting.change = [&](MovedLegs& moved, const ChangeLayout& layout, const Changes& changes, std::size_t place,
+                          std::size_t f) { moved.pose(layout, changes, place, target_.poses[f], twists_[f]); };
+    plantFeet(legs, planting);
   }
 
   void layToes() {
@@ -331,7 +262,6 @@ class Spacetime {
   std::vector<bool> cuts_;
   std::vector<std::vector<FreeFoot>> feet_;  // of each leg, by frame
   std::vector<std::vector<double>> twists_;  // of each frame, of each leg's foot: radians about +Y
-  std::vector<BodyFrame> knownFrames_;       // the last of the part before, as they were
   BodyFrame from_, to_;
 };
 

@@ -301,22 +301,31 @@ void retargetMotion(Movement& movement, const RiggedModel& rig, const RetargetMo
 }
 
 void joinClips(Movement& movement, const RiggedModel& rig, const JoinClips& command) {
-  if (command.clips.size() < 2) refuse("a sequence takes two clips or more");
   std::optional<std::size_t> into;
   if (!command.into.empty()) into = requireClip(movement, command.into);
   if (into && !movement.clips[*into].sequence) refuse(fmt::format("the clip '{}' is no sequence", command.into));
+  const std::vector<std::string> known = into ? movement.clips[*into].sequence->clips : std::vector<std::string>();
+  const auto isRemoved = [&](const std::string& name) {
+    return !findClip(movement, name) && std::find(known.begin(), known.end(), name) != known.end();
+  };
+  std::vector<std::string> names = command.clips;
+  const std::size_t removed = std::erase_if(names, isRemoved);
+  if (names.size() < 2) {
+    refuse(
+        fmt::format("a sequence takes two clips or more{}", removed > 0 ? ", and of its own some were removed" : ""));
+  }
   const Skeleton& skeleton = rig.skeleton();
   const Quat stands = turnToStand(skeleton);
   std::vector<ClipWithContacts> clips;
-  for (const std::string& name : command.clips) {
+  for (const std::string& name : names) {
     if (name == command.into) refuse(fmt::format("the clip '{}' cannot be a part of itself", name));
     const Clip& clip = *movement.clips[requireClip(movement, name)].clip;
     clips.push_back({turnClip(clip, skeleton, stands.conjugate()), {}});
   }
-  JoinedMotions joined = joinMotions(skeleton, clips, {command.seconds, std::nullopt});
+  JoinedMotions joined = joinMotions(skeleton, clips, {command.seconds, std::nullopt}, &movement.warnings);
   Clip made = turnClip(std::move(joined.motion.clip), skeleton, stands);
   if (!into) {
-    made.name = freeName(fmt::format("{}", fmt::join(command.clips, "_")),
+    made.name = freeName(fmt::format("{}", fmt::join(names, "_")),
                          [&](const std::string& name) { return findClip(movement, name).has_value(); });
     movement.clips.emplace_back();
   } else {
@@ -325,9 +334,11 @@ void joinClips(Movement& movement, const RiggedModel& rig, const JoinClips& comm
   }
   const std::size_t at = into.value_or(movement.clips.size() - 1);
   SessionClip& entry = movement.clips[at];
-  entry.sequence = {command.clips, command.seconds, std::move(joined.spans)};
+  entry.sequence = {std::move(names), command.seconds, std::move(joined.spans)};
   entry.authored.reset();
   setBase(entry, skeleton, std::make_shared<const Clip>(std::move(made)));
+  movement.warnings.add("removed-clips", "clips that a sequence was joined of were removed, and are left out of it",
+                        command.into, removed);
   showOther(movement, at);
 }
 

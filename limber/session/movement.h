@@ -30,7 +30,7 @@ struct ClipSource {
 struct ClipSequence {
   std::vector<std::string> clips;
   double seconds = 0;  // that they overlap
-  std::vector<JoinedMotions::Span> spans;
+  std::vector<TimeSpan> spans;
 };
 
 // What a clip is made of. A clip that was made by hand is its keys; recorded motion is left as it is, and what is
@@ -60,6 +60,7 @@ struct Movement {
   std::vector<SessionClip> clips;
   std::optional<std::size_t> chosen;  // the clip that is shown
   double seconds = 0;                 // the moment of it
+  Warnings warnings = {};             // what commands had to leave out
 
   // Null where none is chosen.
   const Clip* clip() const { return chosen ? clips[*chosen].clip.get() : nullptr; }
@@ -96,7 +97,8 @@ void retargetMotion(Movement& movement, const RiggedModel& rig, const RetargetMo
 // Makes the chosen clip anew with what the user says of a foot. Throws where the clip is from no motion, or keeps no
 // such foot.
 void setContactOf(Movement& movement, const RiggedModel& rig, const SetContact& command);
-// Chooses what it makes. Throws as joinMotions does.
+// Chooses what it makes. Of a sequence that is joined anew, clips that it had and that were removed since are left out
+// (warning "removed-clips"). Warns and throws as joinMotions does.
 void joinClips(Movement& movement, const RiggedModel& rig, const JoinClips& command);
 void addClip(Movement& movement, const std::string& name);
 void removeClip(Movement& movement, const std::string& name);

@@ -88,7 +88,7 @@ Json feetJson(const ClipSource& source) {
   for (const FootSpans& feet : source.feet) {
     const std::string& name = source.motion->skeleton.joints[feet.foot].name;
     Json planted = Json::array();
-    for (const FootSpans::Span& span : feet.planted) planted.push_back({span.from, span.to});
+    for (const TimeSpan& span : feet.planted) planted.push_back({span.from, span.to});
     const bool edited = std::any_of(source.contactEdits.begin(), source.contactEdits.end(),
                                     [&](const ContactEdit& edit) { return edit.foot == name; });
     list.push_back({{"foot", name},
@@ -192,6 +192,8 @@ Json sessionState(const Session& session) {
   const RiggedModel& rig = *state.rig;
   Box box;
   for (const Vec3f& position : rig.geometry->positions) box.add(position.cast<double>());
+  Warnings warnings = rig.report ? rig.report->warnings : rig.asset->warnings;
+  warnings.append(state.movement.warnings);
   Json json = {
       {"name", session.source().name},
       {"vertices", rig.geometry->positions.size()},
@@ -227,7 +229,7 @@ Json sessionState(const Session& session) {
       {"posed", !samePose(state.pose, rig.home)},
       {"undo", textOrNull(session.undoName())},
       {"redo", textOrNull(session.redoName())},
-      {"warnings", warningsJson(rig.report ? rig.report->warnings : rig.asset->warnings)}};
+      {"warnings", warningsJson(warnings)}};
   if (rig.report) {
     for (const HandleSuggestion& suggestion : rig.report->suggestions)
       json["suggestions"].push_back(suggestion.handles);
