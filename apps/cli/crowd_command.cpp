@@ -69,7 +69,7 @@ void addCrowdOptions(CLI::App& command, const std::shared_ptr<CrowdArguments>& a
       ->check(CLI::Range(1, 100000).description(""))
       ->type_name("N")
       ->capture_default_str();
-  command.add_option("--builds", crowd.builds, "how many builds they have; at least one of each character")
+  command.add_option("--builds", crowd.builds, "how many builds they have, of all characters; no more than bodies")
       ->check(CLI::Range(1, 10000).description(""))
       ->type_name("N")
       ->capture_default_str();
@@ -96,6 +96,8 @@ void addCrowdOptions(CLI::App& command, const std::shared_ptr<CrowdArguments>& a
       ->check(numberIn(0, 180))
       ->type_name("DEG")
       ->capture_default_str();
+  command.add_flag("--unlike-bodies", crowd.retarget.unlikeBodies,
+                   "let limbs without a partner follow others from front to back: forelegs or wings follow arms");
   command.add_flag("--loop", crowd.edits.loop, "cut each clip to its best loop, where it has one, and join the ends");
   command.add_flag("--in-place", crowd.edits.inPlace, "walk on the spot: without the body's travel");
 }
@@ -105,19 +107,21 @@ void addCrowdOptions(CLI::App& command, const std::shared_ptr<CrowdArguments>& a
 void addCrowdCommand(CLI::App& program) {
   auto arguments = std::make_shared<CrowdArguments>();
   CLI::App* command = program.add_subcommand("crowd", "One file with many bodies of differing builds, all in motion");
-  command->add_option("CHARACTERS", arguments->characters, "rigged models, which bodies have in turn")->required();
-  command->add_option("--motions", arguments->motions, "files with motions, of which each body has one")
+  command->add_option("CHARACTERS", arguments->characters, "rigged models, each for a body before one has two")
+      ->required();
+  command->add_option("--motions", arguments->motions, "files with motions, each for a body before one has two")
       ->required()
       ->type_name("FILE...");
   command->add_option("-o,--output", arguments->output, "the .glb or .gltf to write; - is standard output (GLB)")
       ->required()
       ->type_name("FILE");
   addCrowdOptions(*command, arguments);
-  command->add_option("--save-builds", arguments->builds, "write the bodies one by one, too: build_1.glb, ...")
+  command->add_option("--save-builds", arguments->builds, "write the builds one by one, too: build_1.glb, ...")
       ->type_name("FOLDER");
   arguments->motionFiles.addTo(*command);
   arguments->common.addTo(*command);
   command->footer(
+      "Where there are fewer bodies than characters or clips, some are left out, and a warning names them.\n"
       "Clips are repeated from the moment at which each body begins, so they should be loops (--loop).\n"
       "docs/crowds.md tells more.\n"
       "\nExamples:\n"

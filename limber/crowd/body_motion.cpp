@@ -5,11 +5,13 @@
 #include <utility>
 
 #include "limber/asset/clip_io.h"
+#include "limber/asset/geometry.h"
 #include "limber/asset/motion_io.h"
 #include "limber/asset/node_edit.h"
 #include "limber/crowd/crowd.h"
 #include "limber/pipeline/stand_upright.h"
 #include "limber/retarget/retarget_clip.h"
+#include "limber/skeleton/root_trajectory.h"
 
 namespace limber {
 
@@ -28,6 +30,34 @@ void keepOneKeyOfStill(std::vector<Track<Value>>& tracks) {
     track.times.resize(1);
     track.values.resize(1);
   }
+}
+
+// What a build is like in rest pose, once its clips' turn makes it stand.
+struct StandingBody {
+  Skeleton skeleton;
+  Box box;  // of its surface
+};
+
+StandingBody standingBody(const Asset& still, const Skeleton& skeleton, const Quat& turn) {
+  StandingBody body{skeleton, {}};
+  for (Joint& joint : body.skeleton.joints) {
+    if (joint.parent) continue;
+    joint.rest.translation = turn * joint.rest.translation;
+    joint.rest.rotation = turn * joint.rest.rotation;
+  }
+  for (const Vec3f& position : collectGeometry(still).positions) body.box.add(turn * position.cast<double>());
+  return body;
+}
+
+// Where the body has gone over the ground, and turned, from its rest pose when a clip begins: recordings begin
+// anywhere.
+Vec3 startOf(const StandingBody& body, const Clip& clip) {
+  RootMotionOptions options;
+  options.body = bodyJoint(body.skeleton);
+  options.heading = true;
+  options.smoothing = 0;
+  const Vec3 rest(body.box.center().x(), body.box.min.y(), body.box.center().z());
+  return rootTrajectory(body.skeleton, clip, options).at(0).toAffine() * rest;
 }
 
 }  // namespace
@@ -50,18 +80,26 @@ BodyMotion moveBuild(const Asset& character, const BodyBuild& build, std::span<c
     body.still = asset.clone();
     std::vector<std::string> names;
     for (const Motion& motion : motions) {
-      for (const RetargetedClip& clip : retargetOnto(asset, motion, retarget)) names.push_back(clip.name);
+      try {
+        for (const RetargetedClip& clip : retargetOnto(asset, motion, retarget)) names.push_back(clip.name);
+      } catch (const Error& error) {
+        throw error.within(motion.name);
+      }
     }
     editClips(asset, names, options.edits);
     Warnings ofKeys;
-    body.clips = readClips(asset, animatedSkeleton(asset), ofKeys);
+    const AssetSkeleton animated = animatedSkeleton(asset);
+    const StandingBody standing = standingBody(body.still, animated.skeleton, retarget.turn);
+    body.width = std::max(standing.box.size().x(), standing.box.size().z());
+    for (Clip& clip : readClips(asset, animated, ofKeys)) {
+      const Index cycle = std::max<Index>(1, frameCount(clip, options.framesPerSecond) - 1);
+      const Vec3 start = startOf(standing, clip);
+      body.clips.push_back({std::move(clip), cycle, start});
+    }
     removeClips(asset);
     body.moving = std::move(asset);
   } catch (const Error& error) {
     throw error.within(character.name);
-  }
-  for (const Clip& clip : body.clips) {
-    body.cycles.push_back(std::max<Index>(1, frameCount(clip, options.framesPerSecond) - 1));
   }
   return body;
 }
@@ -69,13 +107,12 @@ BodyMotion moveBuild(const Asset& character, const BodyBuild& build, std::span<c
 void lengthenClips(BodyMotion& body, Index frames, double framesPerSecond) {
   const AssetSkeleton character = animatedSkeleton(body.moving);
   std::vector<Clip> lengthened;
-  for (std::size_t c = 0; c < body.clips.size(); ++c) {
-    const std::size_t cycle = body.cycles[c];
-    const PoseSequence once = sampleFrames(character.skeleton, body.clips[c], framesPerSecond);
+  for (const BodyClip& one : body.clips) {
+    const PoseSequence once = sampleFrames(character.skeleton, one.clip, framesPerSecond);
     PoseSequence all;
     all.frameSeconds = once.frameSeconds;
-    for (std::size_t f = 0; f < frames + cycle; ++f) all.poses.push_back(once.poses[f % cycle]);
-    Clip clip = clipOf(character.skeleton, all, body.clips[c].name);
+    for (std::size_t f = 0; f < std::size_t{frames} + one.cycle; ++f) all.poses.push_back(once.poses[f % one.cycle]);
+    Clip clip = clipOf(character.skeleton, all, one.clip.name);
     keepOneKeyOfStill(clip.translations);
     keepOneKeyOfStill(clip.rotations);
     lengthened.push_back(std::move(clip));

@@ -15,11 +15,18 @@ struct CrowdOptions;
 struct Motion;
 class SkeletonMatches;
 
+struct BodyClip {
+  Clip clip;                  // over the build's skeleton
+  Index cycle = 0;            // frames until it is repeated
+  Vec3 start = Vec3::Zero();  // the point of the ground below the middle of the body as it begins, metres
+};
+
 struct BodyMotion {
-  Asset still;                // the build without clips
-  Asset moving;               // with an animation for each clip, once lengthened
-  std::vector<Clip> clips;    // over its skeleton
-  std::vector<Index> cycles;  // #clips, frames until a clip is repeated
+  Index character = 0;  // by its number
+  Asset still;          // the build without clips
+  Asset moving;         // with an animation for each clip, once lengthened
+  double width = 0;     // at rest, metres
+  std::vector<BodyClip> clips;
 };
 
 // Of one build: retargets all motions. Throws as retargetOnto does, with the character's name.

@@ -8,29 +8,32 @@
 #include <tuple>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor.h"
 #include "limber/asset/accessor_layout.h"
 #include "limber/asset/accessor_sweep.h"
 #include "limber/asset/compact_buffers.h"
-#include "limber/asset/geometry.h"
 #include "limber/asset/merge_assets.h"
 #include "limber/asset/node_edit.h"
 #include "limber/asset/scene_graph.h"
+#include "limber/core/counted.h"
 #include "limber/core/parallel.h"
 #include "limber/core/random.h"
 #include "limber/crowd/body_motion.h"
 #include "limber/crowd/crowd_note.h"
+#include "limber/crowd/mixed_turns.h"
 #include "limber/crowd/shared_accessors.h"
 
 namespace limber {
 
 namespace {
 
-constexpr double kMostNodes = 1e7;     // 3 GB of text
-constexpr double kRoomRound = 1.25;    // times the widest body: arms do not meet
-constexpr double kPlaceJitter = 0.15;  // of the spacing, to either side: no ranks and files
+constexpr double kMostNodes = 1e7;      // 3 GB of text
+constexpr double kRoomRound = 1.25;     // times the widest body: arms do not meet
+constexpr double kPlaceJitter = 0.15;   // of the spacing, to either side: no ranks and files
+constexpr std::size_t kMostNamed = 10;  // of what is left out
 
 void checkOptions(std::span<const Asset> characters, std::span<const Motion> motions, const CrowdOptions& options) {
   const bool isRight = options.bodies > 0 && options.offsets > 0 && options.variety >= 0 && options.variety <= 1 &&
@@ -60,10 +63,17 @@ Asset withoutScene(const Asset& character) {
   return asset;
 }
 
-Asset sharedOf(std::span<const Asset> characters) {
+// #characters: has it a build?
+std::vector<bool> usedCharacters(std::size_t characters, std::span<const BodyMotion> builds) {
+  std::vector<bool> isUsed(characters, false);
+  for (const BodyMotion& build : builds) isUsed[build.character] = true;
+  return isUsed;
+}
+
+Asset sharedOf(std::span<const Asset> characters, const std::vector<bool>& isUsed) {
   std::vector<AssetPart> parts;
-  for (const Asset& character : characters) {
-    parts.push_back({withoutScene(character), "body", Affine::Identity(), std::nullopt});
+  for (std::size_t c = 0; c < characters.size(); ++c) {
+    if (isUsed[c]) parts.push_back({withoutScene(characters[c]), "body", Affine::Identity(), std::nullopt});
   }
   Asset asset = mergeAssets(std::move(parts));
   asset.document.nodes.clear();
@@ -71,15 +81,6 @@ Asset sharedOf(std::span<const Asset> characters) {
   asset.document.scene = 0;
   asset.document.animations.clear();
   return asset;
-}
-
-double widthOf(const Asset& asset) {
-  Vec3f low = Vec3f::Constant(1e30f), high = -low;
-  for (const Vec3f& position : collectGeometry(asset).positions) {
-    low = low.cwiseMin(position);
-    high = high.cwiseMax(position);
-  }
-  return std::max(high.x() - low.x(), high.z() - low.z());
 }
 
 // #nodes: meshes that their joints place, and nothing hangs on. They stand at the root of a scene, where glTF wants
@@ -101,16 +102,21 @@ Vec3 placeInRows(Index body, Index bodies, double spacing, double jitterX, doubl
   return spacing * Vec3(x + kPlaceJitter * jitterX, 0, z + kPlaceJitter * jitterZ);
 }
 
+Quat headingTurn(const CrowdBody& body) {
+  const double half = body.heading * std::numbers::pi / 360;
+  return Quat(std::cos(half), 0, std::sin(half), 0);
+}
+
 // Builds the document, body after body.
 class CrowdWriter {
  public:
-  CrowdWriter(Asset& asset, std::span<const Asset> characters, std::span<const BodyMotion> builds, Index frames,
-              double framesPerSecond)
+  CrowdWriter(Asset& asset, std::span<const Asset> characters, const std::vector<bool>& isUsed,
+              std::span<const BodyMotion> builds, Index frames, double framesPerSecond)
       : asset_(asset), shared_(asset), builds_(builds), frames_(frames) {
     Index materials = 0;
-    for (const Asset& character : characters) {
+    for (std::size_t c = 0; c < characters.size(); ++c) {
       firstMaterial_.push_back(materials);
-      materials += static_cast<Index>(character.document.materials.size());
+      if (isUsed[c]) materials += static_cast<Index>(characters[c].document.materials.size());
     }
     for (const BodyMotion& build : builds) {
       graphs_.push_back(readSceneGraph(build.moving.document));
@@ -168,8 +174,7 @@ class CrowdWriter {
   gltf::Node rootNode(const CrowdBody& body, Index number, const std::string& clip, Index offsetFrames) const {
     gltf::Node root;
     root.name = fmt::format("body_{}", number + 1);
-    const double half = body.heading * std::numbers::pi / 360;
-    setNodeTransform(root, Eigen::Translation3d(body.place) * Quat(std::cos(half), 0, std::sin(half), 0), false);
+    setNodeTransform(root, Eigen::Translation3d(body.place) * headingTurn(body), false);
     Json extras = {{"build", body.build + 1}, {"clip", clip}, {"offset", body.offset}, {"offset_frames", offsetFrames}};
     root.extras.change()[kCrowdNote] = std::move(extras);
     return root;
@@ -206,7 +211,7 @@ class CrowdWriter {
         for (auto& [name, accessor] : target) accessor = shared_.add(from, accessor, kVertexTarget);
       }
       if (primitive.indices) primitive.indices = shared_.add(from, *primitive.indices, kIndexTarget);
-      if (primitive.material) *primitive.material += firstMaterial_[build % firstMaterial_.size()];
+      if (primitive.material) *primitive.material += firstMaterial_[builds_[build].character];
     }
     return known->second = addElement(asset_.document.meshes, std::move(mesh));
   }
@@ -265,31 +270,80 @@ class CrowdWriter {
   std::size_t lostExtensions_ = 0;
 };
 
+// No more than there are bodies.
 std::vector<BodyMotion> makeBuilds(std::span<const Asset> characters, std::span<const Motion> motions,
                                    const CrowdOptions& options) {
   const std::size_t count =
       options.variety > 0 ? std::max<std::size_t>(options.builds, characters.size()) : characters.size();
-  std::vector<BodyMotion> builds(
-      std::min<std::size_t>(count, std::max<std::size_t>(options.bodies, characters.size())));
+  std::vector<BodyMotion> builds(std::min<std::size_t>(count, options.bodies));
   SkeletonMatches matches;
   Random random(options.seed);
+  MixedTurns turns(static_cast<Index>(characters.size()), random.bits());
   std::vector<std::uint64_t> seeds;
   for (std::size_t b = 0; b < builds.size(); ++b) seeds.push_back(random.bits());
+  std::vector<Index> from;
+  for (std::size_t b = 0; b < builds.size(); ++b) from.push_back(turns.next());
   parallelFor(builds.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) {
       const BodyBuild build = randomBuild(seeds[b], options.variety);
-      builds[b] = moveBuild(characters[b % characters.size()], build, motions, options, matches);
+      builds[b] = moveBuild(characters[from[b]], build, motions, options, matches);
+      builds[b].character = from[b];
     }
   });
   return builds;
 }
 
-Index longestCycle(const std::vector<BodyMotion>& builds) {
-  Index longest = 0;
-  for (const BodyMotion& build : builds) {
-    longest = std::max(longest, *std::max_element(build.cycles.begin(), build.cycles.end()));
+// The clips in an order by chance, no more than there are bodies. Gives the names of the others.
+std::vector<std::string> mixClips(std::vector<BodyMotion>& builds, const CrowdOptions& options) {
+  const Index count = static_cast<Index>(builds.front().clips.size()), kept = std::min(count, options.bodies);
+  MixedTurns turns(count, options.seed ^ 0x2545f4914f6cdd1dULL);
+  std::vector<Index> order;
+  for (Index c = 0; c < count; ++c) order.push_back(turns.next());
+  std::vector<std::string> others;
+  for (Index c = kept; c < count; ++c) others.push_back(builds.front().clips[order[c]].clip.name);
+  for (BodyMotion& build : builds) {
+    std::vector<BodyClip> clips;
+    for (Index c = 0; c < kept; ++c) clips.push_back(std::move(build.clips[order[c]]));
+    build.clips = std::move(clips);
   }
+  return others;
+}
+
+// The bodies with their builds and clips: the first have them as they are numbered, for these orders are mixed already.
+std::vector<CrowdBody> castBodies(const std::vector<BodyMotion>& builds, const CrowdOptions& options) {
+  const Index clips = static_cast<Index>(builds.front().clips.size());
+  Random seeds(options.seed ^ 0x9fb21c651e98df25ULL);
+  MixedTurns buildTurns(static_cast<Index>(builds.size()), seeds.bits());
+  MixedTurns clipTurns(clips, seeds.bits());
+  std::vector<CrowdBody> bodies(options.bodies);
+  for (Index i = 0; i < options.bodies; ++i) {
+    bodies[i].build = i < builds.size() ? i : buildTurns.next();
+    bodies[i].clip = i < clips ? i : clipTurns.next();
+  }
+  return bodies;
+}
+
+Index longestCycle(const std::vector<BodyMotion>& builds, const std::vector<CrowdBody>& bodies) {
+  Index longest = 0;
+  for (const CrowdBody& body : bodies) longest = std::max(longest, builds[body.build].clips[body.clip].cycle);
   return longest;
+}
+
+void warnOfLeftOut(Warnings& warnings, std::string_view noun, std::vector<std::string> names) {
+  if (names.empty()) return;
+  const std::size_t count = names.size();
+  names.resize(std::min(count, kMostNamed));
+  warnings.add(fmt::format("{}s-left-out", noun),
+               fmt::format("there are fewer bodies than {}s, so {} {} no body: {}{}", noun, counted(count, noun),
+                           count == 1 ? "has" : "have", fmt::join(names, ", "), count > names.size() ? ", ..." : ""));
+}
+
+std::vector<std::string> namesOfUnused(std::span<const Asset> characters, const std::vector<bool>& isUsed) {
+  std::vector<std::string> names;
+  for (std::size_t c = 0; c < characters.size(); ++c) {
+    if (!isUsed[c]) names.push_back(characters[c].name);
+  }
+  return names;
 }
 
 }  // namespace
@@ -299,42 +353,44 @@ Crowd makeCrowd(std::span<const Asset> characters, std::span<const Motion> motio
   checkOptions(characters, motions, options);
   progress.stage("retarget");
   std::vector<BodyMotion> builds = makeBuilds(characters, motions, options);
-  const Index frames = longestCycle(builds);
+  const std::vector<std::string> otherClips = mixClips(builds, options);
+  const std::vector<bool> isUsed = usedCharacters(characters.size(), builds);
+  Crowd crowd;
+  crowd.bodies = castBodies(builds, options);
+  const Index frames = longestCycle(builds, crowd.bodies);
   double nodes = 0, width = 0;
   for (BodyMotion& build : builds) {
     nodes = std::max(nodes, static_cast<double>(build.moving.document.nodes.size()));
-    width = std::max(width, widthOf(build.still));
+    width = std::max(width, build.width);
     lengthenClips(build, frames, options.framesPerSecond);
   }
   if (nodes * options.bodies > kMostNodes) throw Error(ErrorCode::kLimit, "the crowd has too many bodies");
   progress.stage("crowd");
-  Crowd crowd;
-  crowd.asset = sharedOf(characters);
+  crowd.asset = sharedOf(characters, isUsed);
   crowd.asset.name = "crowd";
   crowd.seconds = frames / options.framesPerSecond;
-  for (const Clip& clip : builds.front().clips) crowd.clips.push_back(clip.name);
-  CrowdWriter writer(crowd.asset, characters, builds, frames, options.framesPerSecond);
+  for (const BodyClip& one : builds.front().clips) crowd.clips.push_back(one.clip.name);
+  CrowdWriter writer(crowd.asset, characters, isUsed, builds, frames, options.framesPerSecond);
   const double spacing = options.spacing.value_or(kRoomRound * width);
   for (Index i = 0; i < options.bodies; ++i) {
     progress.update(static_cast<double>(i) / options.bodies);
     Random random(options.seed ^ (0x5851f42d4c957f2dULL * (i + 1)));  // each body's own, whatever others there are
-    CrowdBody body;
-    body.build = static_cast<Index>(random.below(builds.size()));
-    body.clip = static_cast<Index>(random.below(crowd.clips.size()));
-    const Index cycle = builds[body.build].cycles[body.clip];
+    CrowdBody& body = crowd.bodies[i];
+    const BodyClip& clip = builds[body.build].clips[body.clip];
     const Index step = static_cast<Index>(random.below(options.offsets));
-    const Index offsetFrames = static_cast<Index>(std::uint64_t{step} * cycle / options.offsets);
+    const Index offsetFrames = static_cast<Index>(std::uint64_t{step} * clip.cycle / options.offsets);
     body.offset = offsetFrames / options.framesPerSecond;
     const double jitterX = random.uniform(-1, 1), jitterZ = random.uniform(-1, 1);
-    body.place = placeInRows(i, options.bodies, spacing, jitterX, jitterZ);
     body.heading = options.heading * random.uniform(-1, 1);
+    body.place = placeInRows(i, options.bodies, spacing, jitterX, jitterZ) - headingTurn(body) * clip.start;
     writer.add(body, i, offsetFrames, crowd.clips[body.clip]);
-    crowd.bodies.push_back(body);
   }
   for (BodyMotion& build : builds) {
     crowd.asset.warnings.append(build.moving.warnings);
     crowd.builds.push_back(std::move(build.still));
   }
+  warnOfLeftOut(crowd.asset.warnings, "character", namesOfUnused(characters, isUsed));
+  warnOfLeftOut(crowd.asset.warnings, "clip", otherClips);
   crowd.asset.warnings.add("body-extensions", "what extensions say of nodes and meshes is left out of a crowd", {},
                            writer.lostExtensions());
   checkAsset(crowd.asset);

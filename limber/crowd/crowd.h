@@ -16,7 +16,7 @@ namespace limber {
 
 struct CrowdOptions {
   Index bodies = 100;             // at least 1
-  Index builds = 8;               // differing ones, of the characters in turn; at least one of each character
+  Index builds = 8;               // differing ones; at least one of each character, at most one for each body
   Index offsets = 8;              // moments of its cycle at which a body may begin, evenly over it; at least 1
   double variety = 1;             // 0: as the characters are, to 1: as adults differ (randomBuild)
   std::uint64_t seed = 1;         // of builds, clips, offsets, places
@@ -30,21 +30,27 @@ struct CrowdOptions {
 struct CrowdBody {
   Index build = 0, clip = 0;
   double offset = 0;          // seconds of its clip at which it begins
-  Vec3 place = Vec3::Zero();  // on the ground, metres
+  Vec3 place = Vec3::Zero();  // of its build's origin, metres
   double heading = 0;         // degrees about +Y
 };
 
 struct Crowd {
   Asset asset;
   std::vector<CrowdBody> bodies;   // each a node "body_1", ... with the above as extras ("limber_crowd")
-  std::vector<Asset> builds;       // the bodies that are in it, one each, without clips
-  std::vector<std::string> clips;  // names
+  std::vector<Asset> builds;       // that bodies have, without clips
+  std::vector<std::string> clips;  // that bodies have, by their names
   double seconds = 0;              // of the one animation, "crowd"
 };
 
 // The crowd. A body's clip begins at its offset and is repeated until the longest of all has gone round once; in the
 // last frame before it is repeated it goes over to its first frame, so clips should be loops (ClipEdits::loop), and
 // those that travel start anew from their place.
+//
+// Bodies stand in rows on the ground, y = 0: each clip begins with the body's middle over its place there, and what is
+// lowest of it at rest is at the ground's height, wherever characters and motions have their origins.
+//
+// Each character, build and clip comes once before one of them comes twice, in orders by chance. Where there are fewer
+// bodies than characters or clips, some have none: warnings "characters-left-out" and "clips-left-out".
 //
 // What the file holds: geometry and inverse binds once a build, and of these what differs alone (indices, texture
 // coordinates, weights and pictures are one for all builds of a character); nodes, a skin and channels for each body;

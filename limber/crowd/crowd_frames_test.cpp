@@ -10,7 +10,7 @@
 #include "limber/asset/write.h"
 #include "limber/core/error.h"
 #include "limber/crowd/crowd.h"
-#include "limber/crowd/testing/dragon.h"
+#include "limber/crowd/testing/dragon_crowd.h"
 #include "limber/crowd/testing/moved_nodes.h"
 #include "limber/samples/sample_motions.h"
 
@@ -23,12 +23,9 @@ Crowd twelve() {
   options.builds = 2;
   options.offsets = 5;
   options.heading = 40;
-  std::vector<Asset> characters;
-  characters.push_back(dragon());
   std::vector<Motion> motions = {makeSampleMotion("flap"), makeSampleMotion("flap")};
   motions[1].name = "flap again";
-  Progress progress;
-  return makeCrowd(characters, motions, options, progress);
+  return dragonCrowd(options, motions);
 }
 
 Crowd& crowd() {

@@ -12,6 +12,7 @@
 
 #include "limber/asset/read.h"
 #include "limber/core/folder.h"
+#include "limber/core/list_lines.h"
 #include "limber/core/names.h"
 #include "limber/core/parallel.h"
 #include "limber/pipeline/stand_upright.h"
@@ -186,17 +187,10 @@ void checkBesideCharacters(const CharactersJob& job) {
 
 std::vector<fs::path> readCharacterList(const fs::path& list) {
   const Bytes bytes = readFile(list);
-  std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   const fs::path folder = list == "-" ? fs::path() : list.parent_path();
-  constexpr std::string_view kBlank = " \t\r";
   std::vector<fs::path> characters;
-  while (!text.empty()) {
-    std::string_view line = text.substr(0, text.find('\n'));
-    text.remove_prefix(std::min(text.size(), line.size() + 1));
-    const std::size_t begin = line.find_first_not_of(kBlank);
-    if (begin == std::string_view::npos || line[begin] == '#') continue;
-    line = line.substr(begin, line.find_last_not_of(kBlank) + 1 - begin);
-    characters.push_back(folder / fs::path(line));
+  for (const ListLine& line : listLines({reinterpret_cast<const char*>(bytes.data()), bytes.size()})) {
+    characters.push_back(folder / fs::path(line.text));
   }
   if (characters.empty()) throw Error(ErrorCode::kBadData, "names no character", list.string(), "write a path a line");
   return characters;

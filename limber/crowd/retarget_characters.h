@@ -41,8 +41,7 @@ struct CharactersReport {
 };
 
 // The characters of a list, a path a line: beside the list where they are relative ("-": standard input, where the
-// program runs). Blank lines and those that begin with # count nothing. Throws Error kFile, kBadData where there is
-// none.
+// program runs), as listLines reads them. Throws Error kFile, kBadData where there is none.
 std::vector<std::filesystem::path> readCharacterList(const std::filesystem::path& list);
 
 // What the files are called: "hero.glb", of separate ones "hero_walk.glb" for each motion in turn, after the names of

@@ -30,7 +30,7 @@ TEST(CharacterFileNames, NeverMeet) {
 TEST(CharacterList, HasAPathALineBesideTheList) {
   const testing::TemporaryFolder folder;
   const fs::path list = folder.path() / "list.txt";
-  writeFile(list, asBytes("# heroes\n\n  a b.glb \r\n/c.glb"));
+  writeFile(list, asBytes("\xef\xbb\xbf# heroes\n\n  a b.glb \r\n/c.glb"));
   EXPECT_EQ(readCharacterList(list), (std::vector<fs::path>{folder.path() / "a b.glb", "/c.glb"}));
   writeFile(list, asBytes("\n# none\n"));
   EXPECT_THROW(readCharacterList(list), Error);
