@@ -102,7 +102,7 @@ export const poseName = (name: string) => {
 const warnings: Named = {
   'no-place': 'limbs of the skeleton have no place in the model', 'low-confidence': 'the model hardly looks like the skeleton',
   'rigid-pieces': 'pieces follow one joint each, as hard parts', 'stray-pieces': 'pieces that float about the model are left out of account',
-  'far-vertices': 'loose points far from the model count as nearer than they are',
+  'far-vertices': 'points far away from the rest of the model do not count for its size',
   'degenerate-triangles': 'triangles without area are left out of the computation', 'no-bone-in-sight': 'no bone is in sight of any point of the surface',
   'morph-targets': 'morph targets are left out', 'lights': 'lights are left out', 'cameras': 'cameras are left out',
   'missing-images': 'pictures that cannot be found are left out', 'unsupported-images': 'pictures that are neither PNG nor JPEG are left out',
@@ -116,7 +116,14 @@ const warnings: Named = {
   'kept-axes': 'joints keep axes that meshes, extensions or uneven scales depend on', 'material-extensions': 'what some extensions say of materials is left out',
   'no-root-joint': 'the skeleton gets no root joint: nodes that its roots hang below move',
   'extrapolated-curves': 'curves that go on beyond their keys (cycles, slopes) stand still there',
+  'removed-clips': 'clips that were removed are left out of the sequence',
+  'second-root': 'the skeleton gets a root joint above its own',
+  'root-weights': 'vertices follow the root joint in part',
+  'bad-weights': 'weights that are no numbers, or negative, count as none',
+  'unweighted-vertices': 'vertices follow no joint',
+  'vrma-lengths': 'bones that grow or move along are not kept',
   'decimal-commas': 'numbers have a comma for the point', 'turned-upright': 'the model lay down, and was turned upright',
+  'short-transitions': 'a motion is too short for its transition, which takes less time', 'unlike-rates': 'motions that are blended differ much in speed, and the slower one is played too fast',
 };
 type Warning = SessionState['warnings'][number];
 /** In English the engine's own sentence, which knows the figures. */
