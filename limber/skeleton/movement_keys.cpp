@@ -63,7 +63,8 @@ void MovementKeys::writeTo(Clip& clip, Index joint, bool changed) const {
   scales.values = {first};
 }
 
-void MovementKeys::divide(const MovingTransform& movement, const Bound& bound, const Key& from, const Key& to, int depth) {
+void MovementKeys::divide(const MovingTransform& movement, const Bound& bound, const Key& from, const Key& to,
+                          int depth) {
   const float middle = from.time + (to.time - from.time) / 2;
   if (depth == kMostHalvings || !(middle > from.time && middle < to.time)) return;
   const auto distance = [&](double time, const Transform& local) {
