@@ -206,9 +206,9 @@ class BatchRun {
         ++(known->second.outcome == JobOutcome::kDone ? state_.done : state_.failed);
         continue;
       }
-      const Open open{std::move(record), unfinished() / std::to_string(begunChains_)};
+      Open open{std::move(record), unfinished() / std::to_string(begunChains_)};
       Job job = jobOf(entry, open);
-      open_.emplace(begunChains_++, open);
+      open_.emplace(begunChains_++, std::move(open));
       return JobChain{std::move(job)};
     }
     return std::nullopt;

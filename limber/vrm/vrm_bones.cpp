@@ -123,8 +123,9 @@ std::vector<std::string_view> missingOf(const std::vector<HumanoidJoint>& joints
 std::string helpWithout(const Skeleton& skeleton, std::string_view forPeople) {
   const BodyPieces body(skeleton);
   const bool hasArms = body.anatomy.pairsOf(PartKind::kArm) > 0;
-  if (body.anatomy.pairsOf(PartKind::kLeg) > 1 || (body.isAnimal() && !hasArms))
+  if (body.anatomy.pairsOf(PartKind::kLeg) > 1 || (body.isAnimal() && !hasArms)) {
     return "VRM is for people, and this is read as an animal; glTF, FBX and USD take it as it is";
+  }
   return std::string(forPeople);
 }
 
