@@ -206,12 +206,13 @@ const std::string kBlendShape = R"({"asset": {"version": "2.0"}, "scene": 0, "sc
                                 "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAA"
                                 "AAAAAAAIA/AAAAAAAAgD8AAAAAAACAPw=="
                                 R"("}],
-  "bufferViews": [{"buffer": 0, "byteLength": 88}],
+  "bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 36},
+    {"buffer": 0, "byteOffset": 72, "byteLength": 16}],
   "accessors": [
     {"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 3, "min": [0, 0, 0], "max": [1, 1, 0]},
-    {"bufferView": 0, "byteOffset": 36, "componentType": 5126, "type": "VEC3", "count": 3},
-    {"bufferView": 0, "byteOffset": 72, "componentType": 5126, "type": "SCALAR", "count": 2, "min": [0], "max": [1]},
-    {"bufferView": 0, "byteOffset": 80, "componentType": 5126, "type": "SCALAR", "count": 2}],
+    {"bufferView": 1, "componentType": 5126, "type": "VEC3", "count": 3, "min": [0, 0, 0], "max": [0, 0, 1]},
+    {"bufferView": 2, "componentType": 5126, "type": "SCALAR", "count": 2, "min": [0], "max": [1]},
+    {"bufferView": 2, "byteOffset": 8, "componentType": 5126, "type": "SCALAR", "count": 2}],
   "animations": [
     {"name": "smile", "samplers": [{"input": 2, "output": 3}],
      "channels": [{"sampler": 0, "target": {"node": 0, "path": "weights"}}]},
