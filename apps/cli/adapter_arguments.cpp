@@ -23,7 +23,9 @@ void AdapterArguments::addTo(CLI::App& command) {
   command.add_option("--adapter", files, "such a file, under its name without .json")
       ->type_name("FILE")
       ->allow_extra_args(false);
-  command.add_option("--seed", seed, "what such a program is given as {seed} (default: the adapter's)")->type_name("N");
+  command.add_option("--seed", seed, "what such a program is given as {seed} (default: the adapter's)")
+      ->check(seedNumber())
+      ->type_name("N");
 }
 
 std::vector<std::filesystem::path> AdapterArguments::allFolders() const {

@@ -66,6 +66,13 @@ TEST_F(CliAdapter, ANameThatNobodyHasIsAnErrorThatTellsWhereItWasLookedFor) {
   expectOneLine(run({"rig", "robot.glb", "--adapter-folder", "mine", "--skinning", "two", "-o", "rigged.glb"}), 1);
 }
 
+TEST_F(CliAdapter, ASeedIsAWholeNumberFrom0) {
+  for (const std::string seed : {"-1", "0.5", "x", ""}) {
+    expectOneLine(
+        run({"rig", "robot.glb", "--adapter-folder", "mine", "--rigger", "two", "--seed=" + seed, "-o", "a.glb"}), 2);
+  }
+}
+
 TEST_F(CliAdapter, AProgramThatFailsLeavesNothing) {
   putFailing("echo no checkpoint >&2; exit 3");
   const Result failed = run({"rig", "robot.glb", "--adapter-folder", "mine", "--rigger", "bad", "-o", "rigged.glb"});

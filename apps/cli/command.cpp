@@ -110,6 +110,15 @@ CLI::Validator numberIn(double low, double high) {
       "");
 }
 
+CLI::Validator seedNumber() {
+  return CLI::Validator(
+      [](std::string& text) {
+        if (text.find_first_not_of("0123456789") == std::string::npos) return std::string();
+        return fmt::format("Value {} is no whole number from 0", text);
+      },
+      "");
+}
+
 CLI::Validator momentOfClip() {
   return numberIn(0, 1e6);
 }

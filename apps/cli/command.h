@@ -77,6 +77,8 @@ void checkBeside(const std::string& option, const std::string& path, const std::
 
 // A number from `low` to `high`; CLI::Range lets NaN pass.
 CLI::Validator numberIn(double low, double high);
+// A whole number from 0; CLI11 takes -1 for the largest.
+CLI::Validator seedNumber();
 // A moment of a clip in seconds; one after its end is the end.
 CLI::Validator momentOfClip();
 

@@ -82,6 +82,7 @@ void addCrowdOptions(CLI::App& command, const std::shared_ptr<CrowdArguments>& a
       ->type_name("N")
       ->capture_default_str();
   command.add_option("--seed", crowd.seed, "of builds, clips, offsets and places")
+      ->check(seedNumber())
       ->type_name("N")
       ->capture_default_str();
   command.add_option("--fps", crowd.framesPerSecond, "keys a second")

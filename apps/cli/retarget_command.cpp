@@ -126,7 +126,9 @@ std::vector<RetargetedClip> addMotions(Asset& asset, const RetargetArguments& op
         made = retargetByProgram(asset, motion, *options.program, options.retarget, progress);
         warnings.append(made.warnings);
       } else {
+        asset.warnings = {};
         made.clips = retargetOnto(asset, motion, options.retarget);
+        warnings.append(asset.warnings);
       }
       for (RetargetedClip& clip : made.clips) clips.push_back(std::move(clip));
     } catch (const Error& error) {

@@ -29,6 +29,14 @@ void addKeyTimes(const Track<Value>& track, std::vector<float>& times) {
 template void addKeyTimes(const Track<Vec3f>& track, std::vector<float>& times);
 template void addKeyTimes(const Track<Eigen::Quaternionf>& track, std::vector<float>& times);
 
+double sizeSeenFrom(const Skeleton& skeleton, std::optional<Index> joint) {
+  const std::vector<Affine> globals = restGlobals(skeleton);
+  Box box;
+  for (const Affine& global : globals) box.add(global.translation());
+  const double scale = joint ? globals[*joint].linear().colwise().norm().maxCoeff() : 1;
+  return std::max(box.diagonal(), 1e-9) / std::max(scale, 1e-9);
+}
+
 MovementKeys::MovementKeys(const MovingTransform& movement, std::vector<float> times, double size, double most) {
   for (const float time : sorted(std::move(times))) {
     const Key next{time, movement(time)};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "limber/skeleton/clip.h"
@@ -14,11 +15,15 @@ using MovingTransform = std::function<Transform(double seconds)>;  // a joint's 
 template <typename Value>
 void addKeyTimes(const Track<Value>& track, std::vector<float>& times);
 
+// The size of a skeleton at rest (the diagonal of the box round its joints) as what hangs on that joint measures it: in
+// its own, maybe scaled, frame. Above 0.
+double sizeSeenFrom(const Skeleton& skeleton, std::optional<Index> joint);
+
 // As many keys as it takes.
 class MovementKeys {
  public:
   // times  where keys are wanted, in any order, once or several times; at least one
-  // size   of the skeleton, in the unit of the local translations
+  // size   of the skeleton, in the unit of the local translations (sizeSeenFrom)
   // most   how far the line between two keys may be from the movement: of the size, plus radians, plus what scales
   //        differ. Keys are put between until it holds, where no more than 256 do between two of `times`.
   MovementKeys(const MovingTransform& movement, std::vector<float> times, double size, double most);

@@ -54,12 +54,6 @@ class JointMovement {
   const Track<Vec3f>* scale_;
 };
 
-double sizeOf(const Skeleton& skeleton) {
-  Box box;
-  for (const Affine& global : restGlobals(skeleton)) box.add(global.translation());
-  return std::max(box.diagonal(), 1e-9);
-}
-
 // The joints that carry the body's way: those that move, or the roots where it is held in its place.
 std::vector<MovingRoot> carriersOf(const Skeleton& skeleton, const Clip& clip, Index body) {
   std::vector<MovingRoot> carriers = movingRoots(skeleton, clip);
@@ -76,7 +70,6 @@ std::vector<MovingRoot> carriersOf(const Skeleton& skeleton, const Clip& clip, I
 
 Clip clipInPlace(const Skeleton& skeleton, const Clip& clip, Index body, const RootTrajectory& trajectory) {
   Clip result = clip;
-  const double size = sizeOf(skeleton);
   for (const MovingRoot& root : carriersOf(skeleton, clip, body)) {
     const Affine toAbove = root.above.inverse(Eigen::Affine);
     if (!toAbove.matrix().allFinite()) continue;  // below a scale of 0 nothing shows
@@ -87,7 +80,7 @@ Clip clipInPlace(const Skeleton& skeleton, const Clip& clip, Index body, const R
       return decompose(toAbove * trajectory.at(seconds).toAffine().inverse(Eigen::Isometry) * root.above *
                        joint.at(seconds).toAffine());
     };
-    MovementKeys(movement, std::move(times), size, kBetweenKeys)
+    MovementKeys(movement, std::move(times), sizeSeenFrom(skeleton, skeleton.joints[root.joint].parent), kBetweenKeys)
         .writeTo(result, root.joint, !trajectory.headings.empty());
   }
   return result;
@@ -106,7 +99,7 @@ Clip extractRootMotion(const Skeleton& skeleton, const Clip& clip, Index root, c
                 fmt::format("joint '{}'", skeleton.joints[root].name));
   }
   Clip result = clip;
-  const double size = sizeOf(skeleton);
+  const double size = sizeSeenFrom(skeleton, root);
   const JointMovement before(skeleton, clip, root);
   std::vector<float> rootTimes = trajectory.times;
   before.addKeys(rootTimes);
@@ -124,7 +117,8 @@ Clip extractRootMotion(const Skeleton& skeleton, const Clip& clip, Index root, c
     MovementKeys(movement, std::move(times), size, kBetweenKeys).writeTo(result, j, turns);
   }
   const MovingTransform movement = [&](double seconds) { return decompose(trajectory.at(seconds).toAffine() * rest); };
-  MovementKeys(movement, trajectory.times, size, kBetweenKeys).writeTo(result, root, turns);
+  MovementKeys(movement, trajectory.times, sizeSeenFrom(skeleton, std::nullopt), kBetweenKeys)
+      .writeTo(result, root, turns);
   return result;
 }
 

@@ -118,6 +118,18 @@ TEST(ExtractRootMotion, MovesNothingButTheRoot) {
   }
 }
 
+TEST(ExtractRootMotion, IsAsExactBelowAScale) {
+  Skeleton skeleton = walker(true);
+  Clip clip = walk(1, 4, around);
+  skeleton.joints[0].rest.scale = Vec3::Constant(100);
+  for (Index j = 1; j < skeleton.jointCount(); ++j) skeleton.joints[j].rest.translation /= 100;
+  for (Vec3f& place : clip.translations[0].values) place /= 100;
+  RootMotionOptions options = about(1);
+  options.heading = true;
+  const Clip extracted = extractRootMotion(skeleton, clip, 0, rootTrajectory(skeleton, clip, options));
+  expectUnmoved(skeleton, clip, extracted, 0);
+}
+
 TEST(ExtractRootMotion, TakesMovementsOfTheRootThatAreThere) {
   const Skeleton skeleton = walker(true);
   Clip clip = walk(1, 2, straight);

@@ -62,15 +62,6 @@ void addKeyTimesOf(const std::vector<Track<Value>>& tracks, const std::set<Index
   }
 }
 
-// The skeleton's size as what hangs on that joint measures it: in its own, maybe scaled, frame.
-double sizeSeenFrom(const Skeleton& skeleton, std::optional<Index> joint) {
-  const std::vector<Affine> globals = restGlobals(skeleton);
-  Box box;
-  for (const Affine& global : globals) box.add(global.translation());
-  const double scale = joint ? globals[*joint].linear().colwise().norm().maxCoeff() : 1;
-  return std::max(box.diagonal(), 1e-9) / std::max(scale, 1e-9);
-}
-
 // The clips of a rig on the same joints under other parents.
 class ClipMover {
  public:
