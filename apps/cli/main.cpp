@@ -82,13 +82,8 @@ void parseCall(CLI::App& program, const std::vector<std::string>& arguments) {
   program.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));  // CLI11 wants the last first
 }
 
-// Parsing then runs nothing.
-void dropCallbacks(CLI::App& program) {
-  for (CLI::App* command : program.get_subcommands({})) {
-    command->callback({});
-    dropCallbacks(*command);
-  }
-}
+// Thrown in place of running a call. Its commands' callbacks cannot be taken out: they own what parsing writes to.
+struct CallMakesSense {};
 
 // CLI11 would only say that a subcommand is missing. Empty where the words before the first option name commands.
 std::string wrongCommand(const CLI::App& program, const std::vector<std::string>& arguments) {
@@ -117,12 +112,14 @@ CallOutline outlineCall(const std::vector<std::string>& arguments, RepeatedOptio
   CLI::App program;
   takeRepeated(program, repeated);
   addCommands(program);
-  dropCallbacks(program);
+  program.parse_complete_callback([] { throw CallMakesSense(); });
   CallOutline outline;
   outline.problem = wrongCommand(program, arguments);
   if (!outline.problem.empty()) return outline;
   try {
     parseCall(program, arguments);
+  } catch (const CallMakesSense&) {
+    // as it should
   } catch (const CLI::Success&) {
     outline.problem = "asks for help";
   } catch (const CLI::ParseError& error) {

@@ -154,7 +154,9 @@ Anatomy readAnatomy(const Skeleton& skeleton, const Pose& pose, const AnatomyOpt
   const Guesses guesses = readUnderEach(reading, allowedStates(reading, options));
   const bool isPossible = guesses.field->logSum() > static_cast<double>(kNever) / 2;
   if (!isPossible && options.names && std::any_of(skeleton.joints.begin(), skeleton.joints.end(), isDeclared)) {
-    return readAnatomy(withoutDeclaredBones(skeleton), pose, options);
+    anatomy = readAnatomy(withoutDeclaredBones(skeleton), pose, options);
+    anatomy.believesFile = false;
+    return anatomy;
   }
   const auto& [scores, best, field] = guesses;
   double all = 0, sameSides = 0;
@@ -188,6 +190,10 @@ Anatomy readAnatomy(const Skeleton& skeleton, const Pose& pose, const AnatomyOpt
   if (box.empty()) anatomy.ground = 0;
   anatomy.size = box.empty() ? 0 : box.diagonal();
   return anatomy;
+}
+
+Skeleton believedSkeleton(Skeleton skeleton, const Anatomy& anatomy) {
+  return anatomy.believesFile ? skeleton : withoutDeclaredBones(std::move(skeleton));
 }
 
 }  // namespace limber

@@ -76,6 +76,7 @@ struct Anatomy {
   std::vector<Part> parts;                         // the trunk first; a part's carrier before it
   std::vector<std::optional<std::size_t>> partOf;  // #J
   double confidence = 0;                           // of the axes and of which side is left
+  bool believesFile = true;                        // false: no body can have the bones that the file declares
 
   const Part* find(PartKind kind, Side side = Side::kCenter, Index pair = 0) const;
   Index pairsOf(PartKind kind) const;  // how many pairs (or single ones) there are
@@ -104,5 +105,8 @@ struct AnatomyOptions {
 // in none. Throws Error kBadData where a position is not finite. Cost: about linear in the joints; 0.6 ms for 100.
 Anatomy readAnatomy(const Skeleton& skeleton, const Pose& pose, const AnatomyOptions& options = {});
 Anatomy readAnatomy(const Skeleton& skeleton, const AnatomyOptions& options = {});
+
+// The skeleton with the declared bones that this reading of it believes: all or none.
+Skeleton believedSkeleton(Skeleton skeleton, const Anatomy& anatomy);
 
 }  // namespace limber

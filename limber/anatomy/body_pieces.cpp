@@ -50,8 +50,8 @@ LimbPieces piecesOf(const Part& part, const Skeleton& skeleton, const std::vecto
 
 }  // namespace
 
-BodyPieces::BodyPieces(const Skeleton& skeleton, const AnatomyOptions& options)
-    : anatomy(readAnatomy(skeleton, options)) {
+BodyPieces::BodyPieces(const Skeleton& given, const AnatomyOptions& options) : anatomy(readAnatomy(given, options)) {
+  const Skeleton skeleton = believedSkeleton(given, anatomy);
   const JointTree tree(skeleton);
   findCenter(skeleton, tree);
   const std::vector<Vec3> rest = restPositions(skeleton);

@@ -12,7 +12,8 @@ namespace {
 
 class HumanoidReader {
  public:
-  explicit HumanoidReader(const Skeleton& skeleton) : skeleton_(skeleton), body_(skeleton) {}
+  explicit HumanoidReader(const Skeleton& skeleton)
+      : body_(skeleton), skeleton_(believedSkeleton(skeleton, body_.anatomy)) {}
 
   std::vector<HumanoidJoint> read() {
     for (const HumanoidJoint& declared : declaredJoints(skeleton_)) give(declared.bone, declared.joint, 1);
@@ -71,8 +72,8 @@ class HumanoidReader {
     }
   }
 
-  const Skeleton& skeleton_;
   const BodyPieces body_;
+  const Skeleton skeleton_;
   std::map<std::string_view, HumanoidJoint> given_;
 };
 

@@ -38,6 +38,17 @@ TEST(HumanoidJoints, DeclaredOnesAreAsTheFileSays) {
   EXPECT_EQ(bones.count("leftHand"), 1U);
 }
 
+TEST(HumanoidJoints, DeclaredOnesThatNoBodyCanHaveDoNotCount) {
+  Skeleton person = declaredPerson();
+  const auto before = jointsByBone(person);
+  for (Joint& joint : person.joints) {
+    joint.declaredBone = joint.name == before.at("head") ? "leftToes" : joint.name == before.at("neck") ? "hips" : "";
+  }
+  const auto bones = jointsByBone(person);
+  EXPECT_EQ(bones.at("hips"), before.at("hips"));
+  EXPECT_EQ(bones.at("head"), before.at("head"));
+}
+
 TEST(HumanoidJoints, PeopleUnderTheNamesOfSeveralPrograms) {
   for (const NameHabit habit : kNameHabits) {
     const MadeBody person = personWith(habit);

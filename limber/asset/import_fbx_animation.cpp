@@ -157,7 +157,7 @@ void addKeyTicks(const FbxCurve* curve, std::vector<std::int64_t>& ticks) {
   for (const FbxKey& key : curve->keys()) ticks.push_back(key.ticks);
 }
 
-// The keys within a clip, and its ends where it cuts a curve; of one that stands still its end in any case.
+// The keys within a clip, and its ends where it cuts a curve; of one that stands still its ends in any case.
 struct ClipRange {
   std::int64_t start = 0, stop = 0;
   bool isStill = false;
@@ -169,7 +169,8 @@ struct ClipRange {
     const auto begin = std::lower_bound(ticks.begin(), ticks.end(), start),
                end = std::upper_bound(ticks.begin(), ticks.end(), stop);
     std::vector<std::int64_t> result(begin, end);
-    if (begin != ticks.begin() && (result.empty() || result.front() != start)) result.insert(result.begin(), start);
+    if ((begin != ticks.begin() || isStill) && (result.empty() || result.front() != start))
+      result.insert(result.begin(), start);
     if ((end != ticks.end() || isStill) && (result.empty() || result.back() != stop)) result.push_back(stop);
     return result;
   }
@@ -250,12 +251,13 @@ ClipRange rangeOf(const FbxClipCurves& clip, Warnings& warnings) {
   }
   for (const auto& [object, percent] : clip.percents) add(percent.curve);
   if (ticks.empty()) return {clip.start.value_or(0), clip.start.value_or(0)};
+  if (isStill && clip.start) return {*clip.start, *clip.stop, true};
   const auto [first, last] = std::minmax_element(ticks.begin(), ticks.end());
   if (!clip.start || *clip.start > *last || *clip.stop < *first) return {*first, *last};
   if (*first < *clip.start || *last > *clip.stop) {
     warnings.add("trimmed-clips", "keys outside of their clip's time are cut off", clip.name);
   }
-  return {*clip.start, isStill ? *clip.stop : std::min(*clip.stop, *last), isStill};
+  return {*clip.start, std::min(*clip.stop, *last)};
 }
 
 // What the models and blend shapes of one clip show.

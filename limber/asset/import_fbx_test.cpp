@@ -345,6 +345,10 @@ TEST(ImportFbx7, AClipThatStandsStillLastsAsLongAsItsStack) {
   const Asset still = animated({}, "Lcl Translation", {curve(20, {0}, {5}), "", ""}, span);
   EXPECT_EQ(trackOf(still, "translation").times, (std::vector<float>{0, 3}));
   EXPECT_EQ(still.document.animations[0].channels.size(), 1u);
+  const Asset keyedBefore = animated({}, "Lcl Translation", {curve(20, {-1}, {5}), "", ""}, span);
+  EXPECT_EQ(trackOf(keyedBefore, "translation").times, (std::vector<float>{0, 3}));
+  const Asset keyedAfter = animated({}, "Lcl Translation", {curve(20, {4}, {5}), "", ""}, span);
+  EXPECT_EQ(trackOf(keyedAfter, "translation").times, (std::vector<float>{0, 3}));
   const Asset moving = animated({}, "Lcl Translation", {curve(20, {0, 2}, {5, 6}), "", ""}, span);
   EXPECT_EQ(trackOf(moving, "translation").times, (std::vector<float>{0, 2}));
 }

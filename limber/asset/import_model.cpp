@@ -41,12 +41,14 @@ const Format* formatNamed(std::string_view extension) {
   return found == std::end(kFormats) ? nullptr : found;
 }
 
+constexpr std::size_t kStlHeader = 84;  // bytes of binary STL: a text of 80, and the number of triangles
+
 // A binary STL says nothing of itself but the number of its triangles, 50 bytes each.
 bool isBinaryStl(ByteSpan bytes) {
-  if (bytes.size() < 84) return false;
+  if (bytes.size() < kStlHeader) return false;
   std::uint32_t triangles = 0;
-  std::memcpy(&triangles, bytes.data() + 80, sizeof triangles);
-  return bytes.size() == 84 + 50 * std::uint64_t{triangles};
+  std::memcpy(&triangles, bytes.data() + kStlHeader - sizeof triangles, sizeof triangles);
+  return bytes.size() == kStlHeader + 50 * std::uint64_t{triangles};
 }
 
 const Format* formatByContent(ByteSpan bytes) {
@@ -56,7 +58,8 @@ const Format* formatByContent(ByteSpan bytes) {
   const auto holds = [&](std::string_view text) { return head.find(text) != std::string::npos; };
   if (holds("<COLLADA")) return formatNamed("dae");
   if (starts("OFF") || starts("COFF") || starts("NOFF") || starts("CNOFF")) return formatNamed("off");
-  if ((isBinaryStl(bytes) && bytes.size() > 84) || (starts("solid") && holds("facet"))) return formatNamed("stl");
+  if ((isBinaryStl(bytes) && bytes.size() > kStlHeader) || (starts("solid") && holds("facet")))
+    return formatNamed("stl");
   return nullptr;
 }
 
@@ -112,12 +115,17 @@ void warnOfConversion(Asset& asset, const Convention& convention) {
   }
 }
 
-// Assimp takes STL for binary by its length alone, and otherwise for text.
+// Assimp takes STL for binary by its length alone, and otherwise for text. Headers of binary ones may begin with
+// "solid", too, but their count of triangles has a byte that is 0 (up to 16 million of them), as no text has.
 void checkStl(ByteSpan bytes) {
+  if (isBinaryStl(bytes)) return;
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  if (text.substr(0, kStlHeader).find('\0') != std::string_view::npos) {
+    throw Error(ErrorCode::kBadData, "its length is not that of the triangles it announces: it is cut off, or no STL");
+  }
   const std::size_t start = text.find_first_not_of(" \t\r\n");
-  if (isBinaryStl(bytes) || (start != std::string_view::npos && text.substr(start, 5) == "solid")) return;
-  throw Error(ErrorCode::kBadData, "its length is not that of the triangles it announces: it is cut off, or no STL");
+  if (start != std::string_view::npos && text.substr(start, 5) == "solid") return;
+  throw Error(ErrorCode::kBadData, "it does not begin with 'solid', as STL in text does");
 }
 
 // Assimp's own message, without what is said around it already, and with the file's own name.

@@ -264,6 +264,10 @@ TEST(ImportStl, OneThatIsCutOffIsRefusedInOurWords) {
               "cut.stl: cannot be read as STL: its length is not that of the triangles it announces: it is cut off, or "
               "no STL");
   }
+  bytes.replace(0, 5, "solid");
+  EXPECT_THAT(errorOf(bytes.substr(0, 183), "cut.stl").what(), ::testing::HasSubstr("it is cut off, or no STL"));
+  EXPECT_THAT(errorOf("SOLID thing\nendsolid\n", "t.stl").what(),
+              ::testing::HasSubstr("it does not begin with 'solid', as STL in text does"));
 }
 
 TEST(ImportOff, IsRead) {

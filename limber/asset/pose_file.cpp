@@ -4,6 +4,7 @@
 #include <cmath>
 #include <initializer_list>
 #include <map>
+#include <span>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -11,6 +12,7 @@
 #include "limber/asset/json_access.h"
 #include "limber/asset/json_text.h"
 #include "limber/core/known_error.h"
+#include "limber/skeleton/humanoid_bones.h"
 
 namespace limber {
 
@@ -85,6 +87,16 @@ std::string requiredText(const JsonView& object, std::string_view key) {
   return std::string(text);
 }
 
+// Empty: none is declared.
+std::string_view boneOf(const JsonView& entry) {
+  const std::string_view name = entry.text("bone");
+  if (name.empty()) return {};
+  const std::span<const std::string_view> bones = humanoidBones();
+  const auto found = std::find(bones.begin(), bones.end(), name);
+  if (found == bones.end()) entry.member("bone").fail("is no bone of VRM 1.0");
+  return *found;
+}
+
 }  // namespace
 
 std::string poseToJson(const PortablePose& pose) {
@@ -92,6 +104,7 @@ std::string poseToJson(const PortablePose& pose) {
   for (Index j = 0; j < pose.skeleton.jointCount(); ++j) {
     const Joint& joint = pose.skeleton.joints[j];
     Json entry = {{"name", joint.name}};
+    if (!joint.declaredBone.empty()) entry["bone"] = joint.declaredBone;
     if (joint.parent) entry["parent"] = pose.skeleton.joints[*joint.parent].name;
     entry["rest"] = transformJson(joint.rest);
     const Transform& local = pose.pose.locals[j];
@@ -124,7 +137,7 @@ PortablePose poseFromJson(std::string_view text) {
   std::map<std::string, Index> known;
   for (std::size_t j = 0; j < joints.size(); ++j) {
     const JsonView entry = joints[j];
-    refuseOtherKeys(entry, {"name", "parent", "rest", "local"});
+    refuseOtherKeys(entry, {"name", "bone", "parent", "rest", "local"});
     Joint joint;
     joint.name = requiredText(entry, "name");
     if (!known.emplace(joint.name, static_cast<Index>(j)).second) entry.fail("has the name of another joint");
@@ -133,6 +146,7 @@ PortablePose poseFromJson(std::string_view text) {
       if (above == known.end() || above->second == j) parent.fail("is no joint before this one");
       joint.parent = above->second;
     }
+    joint.declaredBone = boneOf(entry);
     joint.rest = transformOf(entry.object("rest"));
     const JsonView local = entry.object("local");
     pose.pose.locals.push_back(local.exists() ? transformOf(local) : joint.rest);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "limber/core/error.h"
+#include "limber/skeleton/humanoid_bones.h"
 
 namespace limber {
 namespace {
@@ -15,6 +16,7 @@ PortablePose hipsAndHead() {
   pose.name = "wave \xC3\xA9";
   pose.skeleton.joints.resize(2);
   pose.skeleton.joints[0].name = "hips";
+  pose.skeleton.joints[0].declaredBone = humanoidBones()[0];
   pose.skeleton.joints[0].rest.translation = Vec3(0, 1.0 / 3, 1e-17);
   pose.skeleton.joints[1].name = "head";
   pose.skeleton.joints[1].parent = 0;
@@ -38,6 +40,7 @@ TEST(PoseFile, ComesBackBitForBit) {
   EXPECT_EQ(read.skeleton.joints[1].parent, std::optional<Index>(0));
   for (Index j = 0; j < 2; ++j) {
     EXPECT_EQ(read.skeleton.joints[j].name, pose.skeleton.joints[j].name);
+    EXPECT_EQ(read.skeleton.joints[j].declaredBone, pose.skeleton.joints[j].declaredBone);
     expectBitsOf(read.skeleton.joints[j].rest, pose.skeleton.joints[j].rest);
     expectBitsOf(read.pose.locals[j], pose.pose.locals[j]);
   }
@@ -55,6 +58,7 @@ std::string poseRefusal(const std::string& text) {
 TEST(PoseFile, SaysWhatIsWrongAndWhere) {
   const auto joints = [](const std::string& list) { return R"({"limber_pose": 1, "joints": [)" + list + "]}"; };
   EXPECT_THAT(poseRefusal("hello"), HasSubstr("JSON"));
+  EXPECT_THAT(poseRefusal(joints(R"({"name": "a", "bone": "arm"})")), HasSubstr("is no bone of VRM 1.0"));
   EXPECT_THAT(poseRefusal("[1]"), HasSubstr("no pose that limber knows"));
   EXPECT_THAT(poseRefusal(R"({"limber_pose": 2})"), HasSubstr("save one in the studio"));
   EXPECT_THAT(poseRefusal(R"({"limber_pose": 1})"), HasSubstr("has no \"joints\""));

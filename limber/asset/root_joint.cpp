@@ -208,7 +208,9 @@ std::optional<Index> findRootJoint(const Asset& asset, const AssetSkeleton& skel
   if (!root || !hasRig(asset)) return root;
   const SkinWeights weights = readWeights(asset, collectGeometry(asset), skeleton);
   for (Index v = 0; v < weights.vertexCount(); ++v) {
-    if (weights.jointsOf(v)[0] == *root && weights.weightsOf(v)[0] > 0) return std::nullopt;  // the strongest
+    const std::span<const float> strongest = weights.weightsOf(v);
+    const float next = strongest.size() > 1 ? strongest[1] : 0;
+    if (weights.jointsOf(v)[0] == *root && strongest[0] > next) return std::nullopt;
   }
   return root;
 }

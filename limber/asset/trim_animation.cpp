@@ -18,8 +18,6 @@ namespace limber {
 
 namespace {
 
-constexpr float kClosed = 1e-4f;  // weights that are no farther apart are one, as joinLoop has it
-
 std::size_t valuesPerKey(Interpolation interpolation) {
   return interpolation == Interpolation::kCubic ? 3 : 1;
 }
@@ -99,7 +97,7 @@ bool isClosed(const SamplerKeys& keys) {
   const auto first = keys.numbers.begin() + static_cast<std::ptrdiff_t>(value);
   const auto last = keys.numbers.end() - static_cast<std::ptrdiff_t>(perKey * keys.width - value);
   return std::equal(first, first + static_cast<std::ptrdiff_t>(keys.width), last,
-                    [](float a, float b) { return std::abs(a - b) <= kClosed; });
+                    [](float a, float b) { return std::abs(a - b) <= kClosedLoop; });
 }
 
 // Switches stay whole numbers.

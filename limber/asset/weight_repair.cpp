@@ -91,8 +91,12 @@ bool cleanWeights(Asset& asset) {
 
 std::size_t unweightedVertices(const Asset& asset, const gltf::Primitive& primitive) {
   const std::vector<InfluenceSet> sets = readInfluenceSets(asset, primitive);
+  if (sets.empty()) {
+    const auto position = primitive.attributes.find("POSITION");
+    return position ? accessorInfo(asset, *position).count : 0;
+  }
   std::size_t count = 0;
-  for (std::size_t v = 0; !sets.empty() && 4 * v < sets[0].weights.size(); ++v) {
+  for (std::size_t v = 0; 4 * v < sets[0].weights.size(); ++v) {
     const bool hasWeight = std::any_of(sets.begin(), sets.end(), [&](const InfluenceSet& set) {
       const auto row = set.weights.begin() + static_cast<std::ptrdiff_t>(4 * v);
       return 4 * v < set.weights.size() && std::any_of(row, row + 4, [](float weight) { return weight > 0; });

@@ -53,6 +53,16 @@ TEST(RepairWeights, WhatIsNoWeightIsZeroAndTold) {
   EXPECT_EQ(weightsOf(readAsset(writeGlb(asset), "clean.glb")), weightsOf(asset));
 }
 
+TEST(RepairWeights, VerticesWithoutSetsOfWeightsAreTold) {
+  Asset asset = weighted({{1, 0}, {0, 1}, {0.5f, 0.5f}, {0.25f, 0.75f}});
+  asset.document.meshes[0].primitives[0].attributes.erase("JOINTS_0");
+  asset.document.meshes[0].primitives[0].attributes.erase("WEIGHTS_0");
+  const Asset read = readAsset(writeGlb(asset), "none.glb");
+  ASSERT_EQ(read.warnings.items().size(), 1u);
+  EXPECT_EQ(read.warnings.items()[0].kind, "unweighted-vertices");
+  EXPECT_EQ(read.warnings.items()[0].count, 4u);
+}
+
 TEST(RepairWeights, GoodFilesKeepTheirBytes) {
   const Bytes file = writeGlb(weighted({{1, 0}, {0, 1}, {0.5f, 0.5f}, {0.25f, 0.75f}}));
   const Asset asset = readAsset(file, "good.glb");

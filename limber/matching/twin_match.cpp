@@ -7,6 +7,7 @@
 #include <Eigen/SVD>
 
 #include "limber/anatomy/half_body.h"
+#include "limber/anatomy/joint_words.h"
 #include "limber/core/rotation.h"
 
 namespace limber {
@@ -273,7 +274,7 @@ class TwinMatcher {
     for (Index j = 0; j < target_.jointCount(); ++j) {
       const Joint &one = target_.joints[j], &other = source_.joints[twins.sourceOf[j]];
       const bool declared = !one.declaredBone.empty() && !other.declaredBone.empty();
-      common += declared ? one.declaredBone == other.declaredBone : one.name == other.name;
+      common += readNameOf(one) == readNameOf(other) || (!declared && one.name == other.name);
     }
     return common;
   }

@@ -45,8 +45,8 @@ Vec3 medianCenter(const std::vector<SurfacePiece>& pieces, double area) {
   std::iota(order.begin(), order.end(), Index{0});
   Vec3 median;
   for (int axis = 0; axis < 3; ++axis) {
-    std::sort(order.begin(), order.end(),
-              [&](Index a, Index b) { return pieces[a].center[axis] < pieces[b].center[axis]; });
+    std::stable_sort(order.begin(), order.end(),
+                     [&](Index a, Index b) { return pieces[a].center[axis] < pieces[b].center[axis]; });
     double below = 0;
     for (const Index piece : order) {
       median[axis] = pieces[piece].center[axis];

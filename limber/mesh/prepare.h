@@ -27,8 +27,8 @@ struct PreparedMesh {
 
 // Welds vertices at equal positions (bit for bit, -0 equal to 0), leaves out triangles that have a repeated vertex
 // after welding (zero-area triangles with three different vertices stay), centres and scales. Far pieces (modelBox) and
-// loose vertices lie outside the unit box, at most 1e4 from its middle; far-vertices counts those more than kFarAway
-// away.
+// loose vertices lie outside the unit box, at most 1e4 from its middle; far-vertices counts what
+// lies outside of modelBox: of loose vertices those more than kFarAway away.
 //
 // positions  #S source vertices in world space, finite
 // triangles  indices into positions, in range

@@ -16,7 +16,7 @@ namespace limber {
 namespace {
 
 constexpr Index kCoarsest = 8;   // spacings, the first cells
-constexpr double kMargin = 2.5;  // spacings from the mesh to the grid's border, at least
+constexpr double kMargin = 2.5;  // spacings from the box to the grid's border, at least
 constexpr double kInside = 0.5;  // winding number from which a point lies inside
 
 }  // namespace
@@ -27,11 +27,8 @@ SignedDistance::SignedDistance(const TriMesh& mesh, const Bvh& surface, const Wi
     throw Error(ErrorCode::kBadArgument, fmt::format("a grid of {} cells is asked for", resolution), {},
                 "8 to 512 are possible");
   }
-  Box box;
-  for (const Triangle& t : mesh.triangles) {
-    for (const Index v : t) box.add(mesh.position(v));
-  }
-  if (box.empty()) throw Error(ErrorCode::kBadArgument, "a mesh without triangles has no distances");
+  if (mesh.triangles.empty()) throw Error(ErrorCode::kBadArgument, "a mesh without triangles has no distances");
+  const Box box = modelBox(mesh);
   spacing_ = box.longestSide() > 0 ? box.longestSide() / resolution : 1;
   perSpacing_ = 1 / spacing_;
   for (int axis = 0; axis < 3; ++axis) {

@@ -20,7 +20,7 @@ class WindingNumber;
 // Cost: O(nodes near the surface) queries of both trees, in parallel.
 class SignedDistance {
  public:
-  // resolution  cells along the longest side of the mesh's box, 8 to 512
+  // resolution  cells along the longest side of modelBox, 8 to 512: far pieces lie beyond the grid
   // Throws Error kBadArgument for a mesh without triangles.
   SignedDistance(const TriMesh& mesh, const Bvh& surface, const WindingNumber& winding, Index resolution);
 

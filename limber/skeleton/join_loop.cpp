@@ -18,7 +18,6 @@ namespace {
 
 constexpr double kLongestFade = 0.2;     // seconds, of a difference in speed
 constexpr double kFadePart = 1.0 / 3;    // of the clip, likewise at most
-constexpr double kClosed = 1e-4;         // of the skeleton's size: ends that are no farther apart are one
 constexpr double kStraightAhead = 1e-6;  // radians: less of a turn is none
 
 // How the body travels in one cycle: over the ground along a circle, or straight.
@@ -185,7 +184,7 @@ JoinedLoop joinLoop(const Skeleton& skeleton, const Clip& clip, Index body) {
   result.gap = farthestJoint(skeleton, poses.back(), poses.front());
   Box box;
   for (const Vec3& place : restPositions(skeleton)) box.add(place);
-  if (result.gap <= kClosed * box.diagonal()) return result;
+  if (result.gap <= kClosedLoop * box.diagonal()) return result;
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
     const Seam<Offset> seam(times.size() - 1, duration, [&](std::size_t f, std::size_t g) {
       return offsetTo(poses[f].locals[j], poses[g].locals[j]);

@@ -5,6 +5,8 @@
 
 namespace limber {
 
+inline constexpr double kClosedLoop = 1e-4;  // of the skeleton's size, or of a weight: ends no farther apart are one
+
 struct JoinedLoop {
   Clip clip;
   double gap = 0;            // how far the ends were apart: the farthest joint, in the skeleton's unit, travel aside
@@ -19,9 +21,9 @@ struct JoinedLoop {
 //
 // body  the joint whose travel that is: the pelvis
 // Linear keys in even steps, about the clip's frame rate (denseFrameRateOf). A clip whose ends agree already, within
-// 1e-4 of the skeleton's size, loops as its maker meant it to and is left as it is; so is one without duration, or with
-// but two frames. The clip has passed checkClip for the skeleton; throws Error kBadArgument where `body` is no joint of
-// it. Cost: O(frames * joints).
+// kClosedLoop of the skeleton's size, loops as its maker meant it to and is left as it is; so is one without duration,
+// or with but two frames. The clip has passed checkClip for the skeleton; throws Error kBadArgument where `body` is no
+// joint of it. Cost: O(frames * joints).
 JoinedLoop joinLoop(const Skeleton& skeleton, const Clip& clip, Index body);
 
 // The same of plain numbers, such as weights of blend shapes, however close the ends are. None leaves the range that it

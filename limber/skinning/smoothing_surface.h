@@ -21,7 +21,7 @@ struct SmoothingSurface {
   SkinWeights weights;                    // #S
   Eigen::SparseMatrix<double> stiffness;  // #S x #S, lower triangle with the whole diagonal
   Eigen::VectorXd diagonal;               // #S, positive
-  double longestSide = 1;                 // of the box of all triangles; 1 without any
+  double longestSide = 1;                 // of modelBox; 1 without triangles
   double meanSquaredStep = 0;  // of the walk, by area, in squared units of the positions; 0 without triangles
 
   Index vertexCount() const { return static_cast<Index>(positions.size()); }

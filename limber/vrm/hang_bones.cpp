@@ -108,10 +108,13 @@ class ClipMover {
     addKeyTimesOf(clip.rotations, deciding, times);
     addKeyTimesOf(clip.scales, deciding, times);
     Pose pose = restPose(from_.skeleton);
+    Transform last = to_.skeleton.joints[moved].rest;
     const MovingTransform movement = [&](double seconds) {
       sampleClip(clip, seconds, pose);
       const std::vector<Affine> globals = poseGlobals(from_.skeleton, pose);
-      return decompose(parent ? globals[*parent].inverse(Eigen::Affine) * globals[joint] : globals[joint]);
+      const Affine local = parent ? globals[*parent].inverse(Eigen::Affine) * globals[joint] : globals[joint];
+      if (local.matrix().allFinite()) last = decompose(local);  // below a scale of 0 nothing shows
+      return last;
     };
     MovementKeys(movement, std::move(times), sizeSeenFrom(from_.skeleton, parent), kBetweenKeys)
         .writeTo(result, moved, true);

@@ -11,8 +11,8 @@ namespace limber {
 
 // Hangs the joints of bones that are not below the bone that they belong to on that one's joint, with all that hangs on
 // them; says so by a warning "vrm-moved-bones". Clips show what they did: moved joints get keys where any joint above
-// them, old or new, has some, and between these as many as hold them within 1e-5 of the skeleton's size. Where joints
-// stand in the nodes' pose and in bind pose does not change. Returns the rig as it then is.
+// them, old or new, has some, and between these as many as hold them within 1e-5 of the skeleton's size (MovementKeys).
+// Where joints stand in the nodes' pose and in bind pose does not change. Returns the rig as it then is.
 //
 // rig    readSkeleton(asset)
 // bones  of vrmBones; their joints are those of the rig that is returned
