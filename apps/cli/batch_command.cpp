@@ -3,6 +3,7 @@
 #include <exception>
 #include <filesystem>
 #include <new>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,6 +31,7 @@ namespace {
 constexpr std::string_view kBatchCommands[] = {"rig",  "animate",  "retarget", "convert", "preview",
                                                "pose", "transfer", "evaluate", "info"};
 constexpr double kMegabyte = 1 << 20;
+constexpr std::size_t kMostTried = 100;  // lists of options, for one with which a command makes sense
 constexpr int kWrongCode = 2, kStoppedCode = kStorageCode;  // exit codes: a wrong call; the batch could not go on
 
 struct BatchArguments {
@@ -76,25 +78,28 @@ class BatchLine {
   double shownAt_ = 0;
 };
 
-// In a child of the batch: as the program does it by itself, but that an entry's options come after the command's.
+// In a child of the batch.
 int runInChild(const std::vector<std::string>& arguments, BatchWarnings& warnings) {
-  const int code = runProgram(arguments, RepeatedOption::kLastCounts);
+  const int code = runProgram(arguments, Caller::kBatch);
   for (const Warning& warning : givenWarnings().items()) warnings.emplace_back(warning.kind, warning.count);
   return code;
 }
 
-// Of the plan's command, with the options of the first entry where it makes no sense without any. Throws Error kBadData
-// where it makes none with these either: no entry could be done.
+// Of the plan's command; where it makes no sense alone, with the options of the first entry with which it does. Throws
+// Error kBadData where it makes none with those of many entries either: no entry could be done.
 CallOutline outlineOf(const BatchPlan& plan) {
-  std::vector<std::string> words = plan.command;
-  CallOutline outline = outlineCall(words, RepeatedOption::kLastCounts);
-  if (!outline.problem.empty() && !plan.entries.empty()) {
-    const std::vector<std::string>& options = plan.entries.front().options;
-    words.insert(words.end(), options.begin(), options.end());
-    outline = outlineCall(words, RepeatedOption::kLastCounts);
+  CallOutline outline = outlineCall(plan.command, Caller::kBatch);
+  std::set<std::vector<std::string>> tried;
+  for (auto entry = plan.entries.begin();
+       !outline.problem.empty() && entry != plan.entries.end() && tried.size() < kMostTried; ++entry) {
+    if (entry->options.empty() || !tried.insert(entry->options).second) continue;
+    std::vector<std::string> words = plan.command;
+    words.insert(words.end(), entry->options.begin(), entry->options.end());
+    CallOutline withOptions = outlineCall(words, Caller::kBatch);
+    if (withOptions.problem.empty()) outline = std::move(withOptions);
   }
   if (outline.problem.empty() && outline.hasOutput &&
-      std::find(words.begin(), words.end(), kBatchOutput) == words.end()) {
+      std::find(plan.command.begin(), plan.command.end(), kBatchOutput) == plan.command.end()) {
     outline.problem = fmt::format("does not hold \"{}\", as an element of its own", kBatchOutput);
   }
   if (!outline.problem.empty()) throw Error(ErrorCode::kBadData, outline.problem, "command");

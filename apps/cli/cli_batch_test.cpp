@@ -98,6 +98,25 @@ TEST_F(Cli, ACommandThatMakesNoSenseIsRefusedBeforeTheFirstEntry) {
   EXPECT_EQ(run({"batch", "plan.json", "-o", "out", "-q"}).code, 1);  // of an entry's own
 }
 
+TEST_F(Cli, WhatAnEntryAddsIsThatEntrysMatterWhereverItStands) {
+  makeRobot();
+  const std::string bytes = content("robot.glb");
+  fs::copy(folder_ / "robot.glb", folder_ / "second.glb");
+  const std::string good = R"({"path": "second.glb", "options": ["5"]})";
+  int folders = 0;
+  for (const std::string bad : {R"("robot.glb")", R"({"path": "robot.glb", "options": ["x"]})",
+                                R"({"path": "robot.glb", "options": ["5", "-o", "second.glb"]})",
+                                R"({"path": "robot.glb", "options": ["5", "--help"]})"}) {
+    for (const std::string& entries : {bad + ", " + good, good + ", " + bad}) {
+      put("plan.json", batchPlan(entries, R"("rig", "{input}", "-o", "{output}", "--handles")"));
+      const std::string out = "out" + std::to_string(folders++);
+      EXPECT_EQ(run({"batch", "plan.json", "-o", out, "-q"}).code, 1) << entries;
+      EXPECT_THAT(run({"batch", "status", out}).out, HasSubstr("1 done, 1 failed, 0 open")) << entries;
+    }
+  }
+  EXPECT_EQ(content("second.glb"), bytes);
+}
+
 TEST_F(Cli, ABatchBelowItsInputsHasTheSameEntriesAgain) {
   makeRobot();
   put("plan.json", batchPlan(R"(".")"));

@@ -219,7 +219,7 @@ TEST_F(Cli, WhatStandardOutputDoesNotTakeIsAnError) {
            {"info", "robot.glb"}, {"info", "robot.glb", "--json"}, {"--help"}, {"rig", "robot.glb", "-o", "out.glb"}}) {
     Running running(arguments, folder_, "/dev/full");
     const Result result = running.wait();
-    EXPECT_EQ(result.code, 1) << arguments[0];
+    EXPECT_EQ(result.code, 4) << arguments[0];
     EXPECT_THAT(result.error, HasSubstr("limber: ")) << arguments[0];
   }
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -11,6 +10,7 @@
 #include "limber/core/counted.h"
 #include "limber/core/names.h"
 #include "limber/core/parallel.h"
+#include "limber/core/storage_error.h"
 
 namespace limber::cli {
 
@@ -138,9 +138,8 @@ void writeTexts(const std::string& pathBeside, const std::string& beside, const 
 void flushOutput() {
   errno = 0;
   if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return;
-  throw Error(ErrorCode::kFile,
-              fmt::format("cannot be written: {}", errno != 0 ? std::strerror(errno) : "it is closed"),
-              "standard output");
+  if (errno != 0) failToWrite("standard output", errno);
+  throw Error(ErrorCode::kFile, "cannot be written: it is closed", "standard output");
 }
 
 }  // namespace limber::cli

@@ -20,6 +20,7 @@
 namespace {
 
 constexpr int kFailed = 1, kUsage = 2, kInterrupted = 130;
+constexpr const char* kAsksForHelp = "asks for help";
 
 int fail(std::string_view what, int code = kFailed) {
   if (limber::cli::interrupted()) {
@@ -72,10 +73,20 @@ void addCommands(CLI::App& program) {
   addCompletionCommand(program);
 }
 
-// To be called before commands are added.
-void takeRepeated(CLI::App& program, limber::cli::RepeatedOption repeated) {
-  if (repeated == limber::cli::RepeatedOption::kIsRefused) return;
-  program.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+void refuseSecondOutput(CLI::App& program) {
+  for (CLI::App* command : program.get_subcommands({})) {
+    if (CLI::Option* output = command->get_option_no_throw("--output")) {
+      output->multi_option_policy(CLI::MultiOptionPolicy::Throw);
+    }
+    refuseSecondOutput(*command);
+  }
+}
+
+void addCommandsFor(limber::cli::Caller caller, CLI::App& program) {
+  const bool isBatch = caller == limber::cli::Caller::kBatch;
+  if (isBatch) program.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+  addCommands(program);
+  if (isBatch) refuseSecondOutput(program);
 }
 
 void parseCall(CLI::App& program, const std::vector<std::string>& arguments) {
@@ -108,10 +119,9 @@ std::string wrongCommand(const CLI::App& program, const std::vector<std::string>
 
 namespace limber::cli {
 
-CallOutline outlineCall(const std::vector<std::string>& arguments, RepeatedOption repeated) {
+CallOutline outlineCall(const std::vector<std::string>& arguments, Caller caller) {
   CLI::App program;
-  takeRepeated(program, repeated);
-  addCommands(program);
+  addCommandsFor(caller, program);
   program.parse_complete_callback([] { throw CallMakesSense(); });
   CallOutline outline;
   outline.problem = wrongCommand(program, arguments);
@@ -121,7 +131,7 @@ CallOutline outlineCall(const std::vector<std::string>& arguments, RepeatedOptio
   } catch (const CallMakesSense&) {
     // as it should
   } catch (const CLI::Success&) {
-    outline.problem = "asks for help";
+    outline.problem = kAsksForHelp;
   } catch (const CLI::ParseError& error) {
     outline.problem = error.what();
   }
@@ -132,18 +142,18 @@ CallOutline outlineCall(const std::vector<std::string>& arguments, RepeatedOptio
   return outline;
 }
 
-int runProgram(const std::vector<std::string>& arguments, RepeatedOption repeated) {
+int runProgram(const std::vector<std::string>& arguments, Caller caller) {
   CLI::App program("Makes any 3D model limber: a static mesh goes in, a rigged and skinned character comes out.",
                    "limber");
   program.set_version_flag("--version", "limber " LIMBER_VERSION);
-  takeRepeated(program, repeated);
-  addCommands(program);
+  addCommandsFor(caller, program);
   program.footer("limber COMMAND --help shows the options of a command, with an example.");
   if (const std::string problem = wrongCommand(program, arguments); !problem.empty()) return usage(program, problem);
   try {
     try {
       parseCall(program, arguments);
     } catch (const CLI::Success& request) {  // --help, --version
+      if (caller == Caller::kBatch) return usage(program, kAsksForHelp);
       program.exit(request);
     }
     flushOutput();

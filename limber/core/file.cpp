@@ -38,20 +38,6 @@ void readStream(std::FILE* stream, const fs::path& path, const std::function<voi
   if (std::ferror(stream)) fail(path, "cannot be read", errno);
 }
 
-// Would other files fare alike?
-bool isOfStorage(int reason) {
-#ifdef EDQUOT
-  if (reason == EDQUOT) return true;
-#endif
-  return reason == ENOSPC || reason == EROFS || reason == EIO;
-}
-
-[[noreturn]] void failToWrite(const fs::path& path, int reason) {
-  const std::string what = std::string("cannot be written: ") + std::strerror(reason);
-  if (isOfStorage(reason)) throw StorageError(ErrorCode::kFile, what, path.string());
-  throw Error(ErrorCode::kFile, what, path.string());
-}
-
 // Errors name `path`.
 void writeStream(std::FILE* stream, const OutputFile& file, const fs::path& path) {
   const auto write = [&](ByteSpan bytes) {

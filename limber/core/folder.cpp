@@ -6,6 +6,7 @@
 
 #include "limber/core/error.h"
 #include "limber/core/names.h"
+#include "limber/core/storage_error.h"
 
 namespace limber {
 
@@ -49,7 +50,7 @@ std::vector<std::filesystem::path> filesBelow(const std::filesystem::path& folde
 void makeFolder(const std::filesystem::path& folder) {
   std::error_code problem;
   std::filesystem::create_directories(folder, problem);
-  if (problem) throw Error(ErrorCode::kFile, "cannot be made: " + problem.message(), folder.string());
+  if (problem) failToWrite(folder, problem.default_error_condition().value(), "cannot be made");
 }
 
 void removeFolder(const std::filesystem::path& folder) {

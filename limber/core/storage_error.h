@@ -1,5 +1,8 @@
-// What writeFiles throws where it is not the file's fault that it cannot be written.
+// What writing throws where it is not the file's fault that it cannot be written.
 #pragma once
+
+#include <filesystem>
+#include <string_view>
 
 #include "limber/core/error.h"
 
@@ -11,5 +14,10 @@ class StorageError : public Error {
  public:
   using Error::Error;
 };
+
+// Throws what tells that `path` "cannot be written" for a reason (an errno): a StorageError where it is one of these,
+// else an Error kFile.
+[[noreturn]] void failToWrite(const std::filesystem::path& path, int reason,
+                              std::string_view what = "cannot be written");
 
 }  // namespace limber

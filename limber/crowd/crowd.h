@@ -46,8 +46,8 @@ struct Crowd {
 // last frame before it is repeated it goes over to its first frame, so clips should be loops (ClipEdits::loop), and
 // those that travel start anew from their place.
 //
-// Bodies stand in rows on the ground, y = 0: each clip begins with the body's middle over its place there, and what is
-// lowest of it at rest is at the ground's height, wherever characters and motions have their origins.
+// Bodies stand in rows on the ground, y = 0: the first frame of each clip has the body's middle over its place there,
+// and what is lowest of it at rest is at the ground's height, wherever characters and motions have their origins.
 //
 // Each character, build and clip comes once before one of them comes twice, in orders by chance. Where there are fewer
 // bodies than characters or clips, some have none: warnings "characters-left-out" and "clips-left-out".

@@ -15,6 +15,7 @@
 #include "limber/core/list_lines.h"
 #include "limber/core/names.h"
 #include "limber/core/parallel.h"
+#include "limber/core/storage_error.h"
 #include "limber/pipeline/stand_upright.h"
 
 namespace limber {
@@ -109,6 +110,8 @@ class CharactersRun {
     try {
       act();
       return true;
+    } catch (const StorageError&) {
+      throw;  // all others would fare alike
     } catch (const Error& error) {
       if (error.code() == ErrorCode::kCancelled) throw;
       fail(c, files, problemOf(error));

@@ -5,6 +5,7 @@
 #include "limber/asset/read.h"
 #include "limber/asset/write.h"
 #include "limber/core/file.h"
+#include "limber/core/storage_error.h"
 #include "limber/crowd/body_build.h"
 #include "limber/crowd/testing/dragon.h"
 #include "limber/samples/sample_motions.h"
@@ -66,6 +67,20 @@ TEST(RetargetCharacters, AFaultyOneCostsItselfAlone) {
   retargetOnto(alone, job.motions[0], {});
   writeAsset(alone, folder.path() / "alone.glb");
   EXPECT_EQ(readFile(folder.path() / "alone.glb"), readFile(job.folder / "other.glb"));
+}
+
+TEST(RetargetCharacters, AFullDiskEndsAll) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full here";
+  const testing::TemporaryFolder folder;
+  writeAsset(dragon(), folder.path() / "one.glb");
+  CharactersJob job;
+  job.characters = {folder.path() / "one.glb"};
+  job.motions.push_back(makeSampleMotion("flap"));
+  job.folder = folder.path() / "out";
+  fs::create_directory(job.folder);
+  fs::create_symlink("/dev/full", job.folder / "one.glb");
+  Progress progress;
+  EXPECT_THROW(retargetCharacters(job, progress), StorageError);
 }
 
 TEST(RetargetCharacters, NeverWriteOverWhatTheyRead) {

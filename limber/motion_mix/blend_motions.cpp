@@ -17,8 +17,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kMostFrames = 4e6;  // as retargetClip
-constexpr int kMostRepeats = 64;     // of a motion that loops
+constexpr int kMostRepeats = 64;  // of a motion that loops
 constexpr double kSamePhase = 1e-6;
 // Strides a second grow fourfold from a stroll (0.55) to a sprint (2.2): beyond that no two are gaits of one body.
 constexpr double kMostRateRatio = 4;
@@ -97,7 +96,7 @@ Together playedTogether(MixMotion a, MixMotion b, double weight) {
   return together;
 }
 
-// How many times as fast the phase grows in the faster motion as in the slower one, on the whole.
+// How many times as fast the phase grows in the faster motion as in the slower one, on the whole; NaN of two poses.
 double rateRatio(const Together& together) {
   const auto lasts = [&](const GaitPhase& phase) { return phase.when(together.to) - phase.when(together.from); };
   const double ofA = lasts(together.phases.a), ofB = lasts(together.phases.b);
@@ -106,7 +105,7 @@ double rateRatio(const Together& together) {
 
 void warnOfRates(const Together& together, double weight, Warnings& warnings) {
   const double ratio = rateRatio(together);
-  if (ratio <= kMostRateRatio || weight == 0 || weight == 1) return;
+  if (!(ratio > kMostRateRatio) || weight == 0 || weight == 1) return;
   warnings.add("unlike-rates",
                fmt::format("steps of blended motions, or what they last where one has none, differ by a factor of "
                            "{:.3g}: the slower motion is played too fast",
@@ -133,7 +132,7 @@ std::vector<MixMoment> playedMoments(const Together& together, double weight, do
   std::vector<MixMoment> moments;
   while (clock.phase() <= together.to + kSamePhase) {
     moments.push_back({clock.a(), clock.b(), weight});
-    if (static_cast<double>(moments.size()) > kMostFrames) {
+    if (moments.size() > kMostClipFrames) {
       throw Error(ErrorCode::kLimit, "the blend has too many frames", together.a.name(), "choose a lower frame rate");
     }
     clock.advance(frameSeconds * speed, weight, weight);

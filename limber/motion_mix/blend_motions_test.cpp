@@ -132,7 +132,9 @@ TEST_F(BlendMotions, APoseIsHeldAsLongAsTheOtherLasts) {
     EXPECT_TRUE(warnings.empty());
   }
   const ClipWithContacts pose = heldPose(skeleton, walk.clip, 0, 1 / 30.0);
-  EXPECT_EQ(blended(pose, pose, 0.5).clip.duration(), 0);
+  Warnings warnings;
+  EXPECT_EQ(blendMotions(skeleton, pose, pose, {0.5, std::nullopt}, &warnings).clip.duration(), 0);
+  EXPECT_TRUE(warnings.empty());
 }
 
 TEST_F(BlendMotions, OfWhatIsMuchFasterItIsWarned) {

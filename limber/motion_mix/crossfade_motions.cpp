@@ -92,8 +92,9 @@ JoinedMotions joinMotions(const Skeleton& skeleton, std::span<const ClipWithCont
     plantMixedFeet(body, rangeOf(mixed, begin, begin + transition.moments.size(), body.legs().size()), mixed);
     joined.motion = {clipOf(skeleton, body.plain().original(mixed.frames), motions.front().clip.name),
                      mixed.plantedFeet(body)};
-    const auto lasts = static_cast<double>(transition.moments.size() - 1) * frameSeconds;
-    if (warnings && lasts <= options.seconds - frameSeconds) {
+    const auto frames = static_cast<double>(transition.moments.size() - 1);
+    const double lasts = frames * frameSeconds;
+    if (warnings && frames + 1 <= options.seconds / frameSeconds + kWholeFrame) {
       warnOfLength(options.seconds, lasts, motions[i - 1].clip, motions[i].clip, *warnings);
     }
     const double from = static_cast<double>(begin) * frameSeconds;

@@ -151,6 +151,8 @@ TEST_F(CrossfadeMotions, ATransitionIsNoLongerThanItsMotionsAndOfOneBetweenTwoTa
   join({brief, walk}, 0.3, {0.2});
   join({walk, brief}, 0.3, {0.2});
   join({walk, brief, run}, 0.3, {0.1, 0.1});
+  const ClipWithContacts aFrameShort{resampleClip(trimClip(walk.clip, 0, 35 / 60.0), 60), {}};
+  join({aFrameShort, walk}, 0.6, {35 / 60.0});
   join({walk, run}, 5, {std::min(walk.clip.duration(), run.clip.duration())});
 }
 

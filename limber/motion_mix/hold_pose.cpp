@@ -4,14 +4,13 @@
 #include <cmath>
 
 #include "limber/core/error.h"
+#include "limber/retarget/retarget_clip.h"
 
 namespace limber {
 
 namespace {
 
-constexpr double kStill = 1e-4;       // what retargeting leaves of frames that are alike
-constexpr double kMostHeld = 4e6;     // frames, as retargetClip
-constexpr double kWholeFrame = 1e-6;  // of a frame's length
+constexpr double kStill = 1e-4;  // what retargeting leaves of frames that are alike
 
 Eigen::Vector4f numbersOf(const Vec3f& value) {
   return {value.x(), value.y(), value.z(), 0};
@@ -38,7 +37,7 @@ bool isStill(const Clip& clip) {
 
 ClipWithContacts heldPose(const Skeleton& skeleton, const Clip& clip, double seconds, double frameSeconds) {
   const double frames = std::ceil(seconds / frameSeconds - kWholeFrame) + 1;
-  if (!(frames <= kMostHeld)) {
+  if (!(frames <= kMostClipFrames)) {
     throw Error(ErrorCode::kLimit, "a pose would be held for too many frames", clip.name, "choose a shorter time");
   }
   Pose pose = restPose(skeleton);

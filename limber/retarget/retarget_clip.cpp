@@ -13,8 +13,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kMostFrames = 4e6;  // 2 GB of poses of 60 joints; nine hours at 120 frames a second
-constexpr double kMoved = 1e-7;      // of a translation, metres; of a rotation's components
+constexpr double kMoved = 1e-7;  // of a translation, metres; of a rotation's components
 
 Quat nearTo(const Quat& rotation, const Quat& before) {
   return rotation.dot(before) < 0 ? Quat(-rotation.coeffs()) : rotation;
@@ -64,7 +63,7 @@ class PreparedClip {
 
 PoseSequence sampleFrames(const Skeleton& skeleton, const Clip& clip, double frameRate) {
   const double last = std::round(clip.duration() * frameRate);
-  if (!(frameRate > 0) || !(last < kMostFrames)) {
+  if (!(frameRate > 0) || !(last < kMostClipFrames)) {
     throw KnownError(ErrorKind::kMotionTooLong,
                      {ErrorCode::kLimit, "the motion has too many frames", clip.name, "choose a lower frame rate"},
                      {{"name", clip.name}});

@@ -9,8 +9,10 @@
 
 namespace limber {
 
+inline constexpr Index kMostClipFrames = 4'000'000;  // 2 GB of poses of 60 joints; nine hours at 120 frames a second
+
 // The clip at even steps from 0 to its duration, as poses. `frameRate` in frames a second, above 0. Throws Error kLimit
-// for more than 4 million frames.
+// for more than kMostClipFrames.
 PoseSequence sampleFrames(const Skeleton& skeleton, const Clip& clip, double frameRate);
 
 // Poses as a clip with a key at each frame: rotations of joints that turn, translations of joints that move away from

@@ -97,6 +97,7 @@ void InputDigests::findBelow(std::string_view text, const fs::path& folder, Path
 // The files whose paths the text begins with, seen from a folder that `path` leads to and at most so much deeper.
 void InputDigests::findFrom(std::string_view text, const fs::path& folder, const std::string& path, int deeper,
                             Paths& found) {
+  while (!text.empty() && isSlash(text.front())) text.remove_prefix(1);  // as JSON has them: "\/", and "\\\\"
   const FolderNames& names = namesIn(folder);
   for (const std::size_t length : names.files.lengths) {
     if (length > text.size()) break;

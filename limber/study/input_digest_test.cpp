@@ -74,6 +74,8 @@ TEST(InputDigest, SeesFilesInFoldersBelowThatAreNamed) {
     EXPECT_NE(digestOf(model), before) << text;
   };
   expectSeen("my textures/skin.png", R"("uri": "my%20textures/skin.png")");
+  expectSeen("my textures/skin.png", R"("uri": "my%20textures\/skin.png")");
+  expectSeen("my textures/wood/oak.png", R"("my textures\\wood\\oak.png")");
   expectSeen("my textures/skin.png", R"(C:\models\my textures\skin.png)");
   expectSeen("my textures/wood/oak.png", R"(.\my textures\wood\oak.png)");
   expectSeen("my textures/wood/dark oak.png", "mtllib skin.mtl");
