@@ -169,9 +169,9 @@ struct ClipRange {
     const auto begin = std::lower_bound(ticks.begin(), ticks.end(), start),
                end = std::upper_bound(ticks.begin(), ticks.end(), stop);
     std::vector<std::int64_t> result(begin, end);
-    if ((begin != ticks.begin() || isStill) && (result.empty() || result.front() != start))
-      result.insert(result.begin(), start);
-    if ((end != ticks.end() || isStill) && (result.empty() || result.back() != stop)) result.push_back(stop);
+    const bool cutsBefore = begin != ticks.begin(), cutsBehind = end != ticks.end();
+    if ((cutsBefore || isStill) && (result.empty() || result.front() != start)) result.insert(result.begin(), start);
+    if ((cutsBehind || isStill) && (result.empty() || result.back() != stop)) result.push_back(stop);
     return result;
   }
 };

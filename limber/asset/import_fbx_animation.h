@@ -47,11 +47,11 @@ class FbxAnimations {
   // scale   from the file's units to metres
   //
   // A clip begins where its stack does (LocalStart) and ends with its last key or its stack; one whose curves stand
-  // still ends with its stack. Values are linear between
-  // keys: where the curves, or the turning by Euler angles, run otherwise, keys are put between theirs, until what is
-  // shown differs by no more than a ten thousandth of a radian (or of what a track moves through), though none closer
-  // together than 1/48 s. What only steps becomes a track of steps; a step among others two keys one after the other.
-  // What a clip holds elsewhere than the rest, without a curve, gets one key where the clip begins.
+  // still ends with its stack. Values are linear between keys: where the curves, or the turning by Euler angles, run
+  // otherwise, keys are put between theirs, until what is shown differs by no more than a ten thousandth of a radian
+  // (or of what a track moves through), though none closer together than 1/48 s. What only steps becomes a track of
+  // steps; a step among others two keys one after the other. What a clip holds elsewhere than the rest, without a
+  // curve, gets one key where the clip begins.
   void addClips(Asset& asset, const std::vector<std::optional<Index>>& nodeOf,
                 const std::vector<FbxShapesInUse>& shapes, double scale) const;
 

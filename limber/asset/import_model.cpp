@@ -58,8 +58,8 @@ const Format* formatByContent(ByteSpan bytes) {
   const auto holds = [&](std::string_view text) { return head.find(text) != std::string::npos; };
   if (holds("<COLLADA")) return formatNamed("dae");
   if (starts("OFF") || starts("COFF") || starts("NOFF") || starts("CNOFF")) return formatNamed("off");
-  if ((isBinaryStl(bytes) && bytes.size() > kStlHeader) || (starts("solid") && holds("facet")))
-    return formatNamed("stl");
+  const bool hasTriangles = bytes.size() > kStlHeader;
+  if ((isBinaryStl(bytes) && hasTriangles) || (starts("solid") && holds("facet"))) return formatNamed("stl");
   return nullptr;
 }
 

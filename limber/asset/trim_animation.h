@@ -13,7 +13,7 @@ namespace limber {
 // channel whose keys are not in order, or whose values do not fit them, stays as it is (warning "invalid-keys").
 void trimAnimation(Asset& asset, gltf::Animation& animation, const TimeSpan& span);
 
-// The same with the ends of all weights of blend shapes joined (joinTrack) where they are more than 1e-4 apart: a face
+// The same with the ends of all weights of blend shapes joined (joinTrack) unless they are one (kClosedLoop): a face
 // that loops with the joints that joinLoop joins. What else moves is cut alone.
 void loopAnimation(Asset& asset, gltf::Animation& animation, const TimeSpan& span);
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <deque>
 #include <exception>
 #include <map>
@@ -22,6 +21,7 @@
 #include "limber/core/error.h"
 #include "limber/core/folder.h"
 #include "limber/core/progress.h"
+#include "limber/core/storage_error.h"
 #include "limber/jobs/job_key.h"
 #include "limber/jobs/job_pool.h"
 #include "limber/study/command_words.h"
@@ -241,19 +241,15 @@ class BatchRun {
   int runInChild(const std::vector<std::string>& arguments, const fs::path& made, const fs::path& warningsFile) const {
     BatchWarnings warnings;
     try {
-      if (prints_ && !std::freopen(made.c_str(), "wb", stdout)) failToPrint(made);
+      if (prints_ && !std::freopen(made.c_str(), "wb", stdout)) failToWrite(made, errno);
       const int code = options_.command(arguments, warnings);
-      if (prints_ && (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)) failToPrint(made);
+      if (prints_ && (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)) failToWrite(made, errno);
       if (code == 0 && !warnings.empty()) writeFile(warningsFile, asBytes(dumpReport(Json(warnings))));
       return code;
     } catch (const Error& error) {
       fmt::print(stderr, "{}{}\n", kSpeaker, error.what());
       return options_.storageCode;
     }
-  }
-
-  [[noreturn]] static void failToPrint(const fs::path& made) {
-    throw Error(ErrorCode::kFile, fmt::format("cannot be written: {}", std::strerror(errno)), made.string());
   }
 
   static BatchWarnings warningsIn(const fs::path& file) {
@@ -330,7 +326,7 @@ class BatchRun {
     std::error_code problem;
     makeFolder(place.parent_path());
     fs::rename(made, place, problem);
-    if (problem) throw Error(ErrorCode::kFile, "cannot be written: " + problem.message(), place.string());
+    if (problem) failToWrite(place, problem.value());
   }
 
   void keep(BatchRecord record) {

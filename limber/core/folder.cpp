@@ -50,7 +50,7 @@ std::vector<std::filesystem::path> filesBelow(const std::filesystem::path& folde
 void makeFolder(const std::filesystem::path& folder) {
   std::error_code problem;
   std::filesystem::create_directories(folder, problem);
-  if (problem) failToWrite(folder, problem.default_error_condition().value(), "cannot be made");
+  if (problem) failToWrite(folder, problem.value(), "cannot be made");
 }
 
 void removeFolder(const std::filesystem::path& folder) {

@@ -53,8 +53,8 @@ std::vector<std::string> characterFileNames(std::span<const std::filesystem::pat
 // Reads each character once, retargets, writes and forgets it: memory is that of the motions and of as many characters
 // as there are threads. A character that cannot be read, moved or written costs itself alone. The files are the same
 // for any number of threads. Throws Error kBadArgument where no character, no motion, or a format that keeps too few
-// clips is asked for, kFile where the folder cannot be made, StorageError where
-// nothing can be written there any more, and kCancelled.
+// clips is asked for, kFile where the folder cannot be made, StorageError where nothing can be written
+// there any more, and kCancelled.
 CharactersReport retargetCharacters(const CharactersJob& job, Progress& progress);
 
 }  // namespace limber

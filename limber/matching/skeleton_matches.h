@@ -12,9 +12,9 @@
 
 namespace limber {
 
-// Two skeletons are the same where their joints have the same names, declared bones, parents and rest
-// transforms, whatever file they
-// came from. For any number of threads: what two ask for at once is made by one, while the other waits.
+// Two skeletons are the same where their joints have the same names, declared bones, parents and rest transforms,
+// whatever file they came from. For any number of threads: what two ask for at once is made by one, while the other
+// waits.
 class SkeletonMatches {
  public:
   // As matchSkeletons, whose errors it throws.

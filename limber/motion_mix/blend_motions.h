@@ -20,8 +20,8 @@ struct BlendOptions {
 // their speeds. Poses, way and contacts are mixFrames', feet stay planted (plantMixedFeet). The result's contacts are
 // its own, its name is a's. Over the joints of `skeleton`, of which both clips and the feet are. `warnings`, if any, is
 // told of motions that are too unlike to go in step, more than four times as fast as each other ("unlike-rates").
-// Throws Error kBadArgument where the weight is not within [0, 1], kLimit for what would take more than 4 million
-// frames, and as MixBody and MixMotion do.
+// Throws Error kBadArgument where the weight is not within [0, 1], kLimit for what would take more than
+// kMostClipFrames, and as MixBody and MixMotion do.
 ClipWithContacts blendMotions(const Skeleton& skeleton, const ClipWithContacts& a, const ClipWithContacts& b,
                               const BlendOptions& options = {}, Warnings* warnings = nullptr);
 
