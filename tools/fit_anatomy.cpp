@@ -3,7 +3,9 @@
 // Maximum likelihood of the labels and axes given the skeletons, with a Gaussian prior on the weights, by stochastic
 // gradients (Adam: Kingma, Ba 2015); copies damaged as skeletons differ from maker to maker
 // (evaluate/labelled_skeleton.h), half of them without names. --folds N leaves every N-th group of skeletons out in
-// turn and prints how those are read.
+// turn and prints how those are read; --makers N does so with whole makers, dealt into N folds, and prints the table of
+// docs/anatomy.md. A file's maker is its folder in wild/, else its name up to the first '_'; --same A=B says that two
+// are one.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -24,6 +26,8 @@
 #include "limber/core/file.h"
 #include "limber/core/numbers.h"
 #include "limber/core/parallel.h"
+#include "limber/core/progress.h"
+#include "limber/evaluate/anatomy_table.h"
 #include "limber/evaluate/labelled_skeleton.h"
 
 using namespace limber;
@@ -31,7 +35,7 @@ using namespace limber;
 namespace {
 
 struct Settings {
-  int copies = 10, epochs = 24, folds = 0;
+  int copies = 10, epochs = 24, folds = 0, makerFolds = 0;
   double prior = 2e-4;  // of a weight's square, for each example
   double rate = 0.03;
 };
@@ -72,7 +76,7 @@ PartField fieldOf(const HalfBody& body, const BodyMeasures::Table& table, const 
 Example exampleOf(const LabelledSkeleton& body, bool names, bool withTables) {
   Example example;
   example.skeleton = std::make_unique<Skeleton>(body.skeleton);
-  example.reading = std::make_unique<BodyReading>(*example.skeleton, restPose(*example.skeleton), names);
+  example.reading = std::make_unique<BodyReading>(*example.skeleton, restPose(*example.skeleton), names, false);
   const BodyReading& reading = *example.reading;
   double most = -4;
   for (std::size_t g = 0; g < reading.guesses.size(); ++g) {
@@ -253,8 +257,8 @@ void addExamples(const LabelledSkeleton& body, double weight, const Settings& se
   for (int c = 0; c < settings.copies; ++c) {
     LabelledSkeleton copy = body;
     // Most copies have one or two damages of the form; few are turned or mirrored, as few files are.
-    constexpr std::array kOften = {Damage::kStretched, Damage::kPosed, Damage::kCropped, Damage::kJointsAdded,
-                                   Damage::kJointsRemoved};
+    constexpr std::array kOften = {Damage::kStretched,   Damage::kPosed,         Damage::kCropped,
+                                   Damage::kJointsAdded, Damage::kJointsRemoved, Damage::kAttached};
     const std::uint64_t count = 1 + random.below(2);
     for (std::uint64_t i = 0; i < count; ++i)
       copy = damaged(std::move(copy), kOften[random.below(kOften.size())], random);
@@ -348,6 +352,62 @@ void tell(std::string_view what, const Score& s) {
              100.0 * static_cast<double>(s.states) / static_cast<double>(s.joints), s.joints);
 }
 
+std::string makerOf(const std::string& file, const std::vector<std::string>& same) {
+  const std::filesystem::path path(file);
+  std::vector<std::string> steps;
+  for (const auto& step : path) steps.push_back(step.string());
+  std::string maker;
+  if (steps.size() > 2 && steps[0] == "wild") {
+    maker = steps[steps[1] == "judge" && steps.size() > 3 ? 2 : 1];
+  } else {
+    const std::string& name = steps.size() > 2 && steps[0] == "rigged" ? steps[1] : steps.back();
+    maker = name.substr(0, name.find_first_of("_. "));
+  }
+  for (const std::string& pair : same) {
+    const std::size_t equals = pair.find('=');
+    if (equals != std::string::npos && maker == pair.substr(0, equals)) return pair.substr(equals + 1);
+  }
+  return maker;
+}
+
+// Of makers that were left out whole: with names, without, and what the field makes of names without conventions.
+struct LeftOut {
+  AnatomyScore named, hidden;
+
+  void add(const LabelledSkeleton& body, const PartWeights& weights) {
+    const Pose rest = restPose(body.skeleton);
+    AnatomyOptions withoutNames;
+    withoutNames.names = false;
+    addScore(body, readAnatomyWith(weights, body.skeleton, rest, {}), named);
+    addScore(body, readAnatomyWith(weights, body.skeleton, rest, withoutNames), hidden);
+  }
+  void add(const LeftOut& other) {
+    named.add(other.named);
+    hidden.add(other.hidden);
+  }
+};
+
+void printLeftOut(const std::map<std::string, LeftOut>& makers) {
+  const auto percent = [](std::size_t some, std::size_t all) {
+    return all > 0 ? 100.0 * static_cast<double>(some) / static_cast<double>(all) : 0.0;
+  };
+  const auto row = [&](const std::string& name, const LeftOut& score) {
+    const AnatomyScore &a = score.named, &b = score.hidden;
+    fmt::print("| {} | {} | {} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} |\n", name, a.skeletons, a.parts,
+               percent(a.right, a.parts), percent(a.landmarksRight, a.landmarks), percent(a.axes, a.skeletons),
+               percent(b.right, b.parts), percent(b.landmarksRight, b.landmarks), percent(b.axes, b.skeletons));
+  };
+  fmt::print(
+      "| maker left out | skeletons | parts | right, % | landmarks, % | up and front, % | names hidden: right, % | "
+      "landmarks, % | up and front, % |\n| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n");
+  LeftOut all;
+  for (const auto& [name, score] : makers) {
+    row(name, score);
+    all.add(score);
+  }
+  row("all", all);
+}
+
 void writeWeights(const PartWeights& weights, const std::string& file) {
   const auto text = [](const std::vector<float>& values) {
     std::string lines, line;
@@ -380,7 +440,8 @@ void writeWeights(const PartWeights& weights, const std::string& file) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::vector<std::string> files, checks;
+  const double started = secondsNow();
+  std::vector<std::string> files, checks, same;
   std::string data = "../shared/data", out;
   Settings settings;
   for (int i = 1; i < argc; ++i) {
@@ -391,6 +452,10 @@ int main(int argc, char** argv) {
       out = argv[++i];
     else if (word == "--folds")
       settings.folds = std::stoi(argv[++i]);
+    else if (word == "--makers")
+      settings.makerFolds = std::stoi(argv[++i]);
+    else if (word == "--same")
+      same.push_back(argv[++i]);
     else if (word == "--copies")
       settings.copies = std::stoi(argv[++i]);
     else if (word == "--epochs")
@@ -448,6 +513,38 @@ int main(int argc, char** argv) {
     }
     return fit(examples, settings);
   };
+  if (settings.makerFolds > 0) {
+    std::map<std::string, std::vector<const std::vector<std::size_t>*>> makers;
+    for (const auto& [key, group] : groups) makers[makerOf(bodies[group.front()].file, same)].push_back(&group);
+    // The largest first, each to the fold that has the fewest groups.
+    std::vector<std::string> names;
+    for (const auto& [name, of] : makers) names.push_back(name);
+    std::stable_sort(names.begin(), names.end(), [&](const std::string& a, const std::string& b) {
+      return makers[a].size() > makers[b].size();
+    });
+    std::vector<std::vector<std::string>> folds(static_cast<std::size_t>(settings.makerFolds));
+    std::vector<std::size_t> sizes(folds.size(), 0);
+    for (const std::string& name : names) {
+      const auto fold = std::min_element(sizes.begin(), sizes.end()) - sizes.begin();
+      folds[static_cast<std::size_t>(fold)].push_back(name);
+      sizes[static_cast<std::size_t>(fold)] += makers[name].size();
+    }
+    std::map<std::string, LeftOut> scores;
+    for (const std::vector<std::string>& fold : folds) {
+      std::vector<const std::vector<std::size_t>*> in;
+      for (const std::string& name : names) {
+        if (std::find(fold.begin(), fold.end(), name) == fold.end())
+          in.insert(in.end(), makers[name].begin(), makers[name].end());
+      }
+      const PartWeights weights = fitTo(in);
+      for (const std::string& name : fold) {
+        for (const auto* group : makers[name]) {
+          for (const std::size_t b : *group) scores[name].add(bodies[b], weights);
+        }
+      }
+    }
+    printLeftOut(scores);
+  }
   if (settings.folds > 0) {
     Score named, unnamed;
     for (int fold = 0; fold < settings.folds; ++fold) {
@@ -463,7 +560,7 @@ int main(int argc, char** argv) {
     tell("left out, with names", named);
     tell("left out, names hidden", unnamed);
   }
-  if (out.empty() && settings.folds > 0) return 0;
+  if (out.empty() && settings.folds + settings.makerFolds > 0) return 0;
   std::vector<const std::vector<std::size_t>*> every;
   for (const auto& [key, group] : groups) every.push_back(&group);
   const PartWeights weights = fitTo(every);
@@ -477,4 +574,5 @@ int main(int argc, char** argv) {
     if (check.skeletons > 0) tell(names ? "check, with names" : "check, names hidden", check);
   }
   if (!out.empty()) writeWeights(weights, out);
+  fmt::print("{:.0f} s\n", secondsNow() - started);
 }

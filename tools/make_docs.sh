@@ -131,6 +131,10 @@ if [ -d "${LIMBER_SHARED_DATA:-../shared/data}" ]; then
   sed -i -e '/^<!-- table: made by/,/^<!-- end of table/{/^<!--/!d}' -e "/^<!-- table: made by/r $work/anatomy.md" docs/anatomy.md
 fi
 
+# And the conventions whose names are certain.
+$limber info --conventions >$work/conventions.md
+sed -i -e '/^<!-- conventions: made by/,/^<!-- end of conventions/{/^<!--/!d}' -e "/^<!-- conventions: made by/r $work/conventions.md" docs/anatomy.md
+
 characters=${LIMBER_SHARED_DATA:-../shared/data}/rigged
 if [ -d "$characters" ]; then
   creatures=$(dirname "$characters")/creatures

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "command.h"
+#include "limber/anatomy/naming_convention.h"
 #include "limber/asset/json_text.h"
 #include "limber/asset/read.h"
 #include "limber/core/counted.h"
@@ -14,7 +15,7 @@ namespace {
 
 struct InfoArguments {
   std::string input;
-  bool json = false;
+  bool json = false, conventions = false;
 };
 
 Json vectorJson(const Vec3& v) {
@@ -52,9 +53,16 @@ Json anatomyJson(const Anatomy& anatomy, const std::vector<std::string>& names) 
     entry["evidence"] = nameOf(part.evidence);
     parts.push_back(std::move(entry));
   }
-  return {{"up", vectorJson(anatomy.axes.up)}, {"front", vectorJson(anatomy.axes.front)},
-          {"ground", anatomy.ground},          {"size", anatomy.size},
-          {"confidence", anatomy.confidence},  {"parts", std::move(parts)}};
+  Json contradicted = Json::array();
+  for (const Index joint : anatomy.contradicted) contradicted.push_back(names[joint]);
+  return {{"up", vectorJson(anatomy.axes.up)},
+          {"front", vectorJson(anatomy.axes.front)},
+          {"ground", anatomy.ground},
+          {"size", anatomy.size},
+          {"confidence", anatomy.confidence},
+          {"convention", anatomy.convention.empty() ? Json() : Json(anatomy.convention)},
+          {"contradicted_names", std::move(contradicted)},
+          {"parts", std::move(parts)}};
 }
 
 Json infoJson(const std::string& file, const AssetInfo& info) {
@@ -125,17 +133,29 @@ std::string axisName(const Vec3& direction) {
 // One line a part: what it is, how sure that is, and its joints.
 void printAnatomy(const Anatomy& anatomy, const std::vector<std::string>& names) {
   if (anatomy.parts.empty()) return printField("body", "none is seen in the joints");
+  std::vector<std::string> attached;
   printField("body", fmt::format("up {}, front {}, {:.0f} % sure", axisName(anatomy.axes.up),
                                  axisName(anatomy.axes.front), 100 * anatomy.confidence));
+  if (!anatomy.convention.empty()) printField("", fmt::format("named as {} names joints", anatomy.convention));
+  if (!anatomy.contradicted.empty()) {
+    std::vector<std::string> joints;
+    for (const Index joint : anatomy.contradicted) joints.push_back(names[joint]);
+    printField("", fmt::format("the tree contradicts the names of {}", joinNames(joints)));
+  }
   for (const Part& part : anatomy.parts) {
     std::vector<std::string> joints;
     for (const Index joint : part.joints) joints.push_back(names[joint]);
+    if (part.kind == PartKind::kAttachment) {
+      attached.insert(attached.end(), joints.begin(), joints.end());
+      continue;
+    }
     const std::string side = part.side == Side::kCenter ? "" : fmt::format("{} ", nameOf(part.side));
     const std::string number = part.pair > 0 ? fmt::format(" {}", part.pair + 1) : "";
     const std::string more = part.branches.empty() ? "" : fmt::format(", and {} beside", part.branches.size());
     printField("", fmt::format("{}{}{} ({:.0f} %): {}{}", side, nameOf(part.kind), number, 100 * part.confidence,
                                joinNames(joints), more));
   }
+  if (!attached.empty()) printField("", fmt::format("attachments: {}", joinNames(attached)));
 }
 
 void printRig(const AssetInfo& info) {
@@ -171,7 +191,28 @@ void print(const std::string& file, const AssetInfo& info) {
   printWarnings(info.warnings, false);
 }
 
+// As a table in Markdown, for docs/anatomy.md.
+void printConventions() {
+  fmt::print("| names of | hips, upper leg, lower arm, index finger | documented at |\n| --- | --- | --- |\n");
+  for (const NamingConvention& convention : namingConventions()) {
+    std::vector<std::string> names;
+    const auto add = [&](JointRole role, Side side) {
+      for (const int pair : {0, 1}) {
+        std::string name = conventionName(convention, role, side, 0, pair);
+        if (!name.empty()) return names.push_back(fmt::format("`{}`", name));
+      }
+    };
+    add(JointRole::kHips, Side::kCenter);
+    add(JointRole::kSpineToHead, Side::kCenter);
+    for (const JointRole role : {JointRole::kUpperLeg, JointRole::kLowerArm, JointRole::kIndex}) add(role, Side::kLeft);
+    fmt::print("| {} | {} | {} |\n", convention.name, joinNames(names), convention.documentation);
+  }
+}
+
 void run(const InfoArguments& options) {
+  if (options.conventions) return printConventions();
+  if (options.input.empty())
+    throw Error(ErrorCode::kBadArgument, "info needs a file to tell about, or --conventions");
   const Asset asset = readAsset(options.input);
   const AssetInfo info = inspectAsset(asset);
   if (options.json) {
@@ -186,8 +227,10 @@ void run(const InfoArguments& options) {
 void addInfoCommand(CLI::App& program) {
   auto options = std::make_shared<InfoArguments>();
   CLI::App* command = program.add_subcommand("info", "Tell what is in a file");
-  command->add_option("FILE", options->input, "the file; - is standard input")->required();
+  command->add_option("FILE", options->input, "the file; - is standard input");
   command->add_flag("--json", options->json, "print JSON");
+  command->add_flag("--conventions", options->conventions,
+                    "print the naming conventions whose joints are known for certain, as a table in Markdown");
   command->footer(
       "Pieces and watertightness are counted after vertices at equal positions are merged; watertight means that\n"
       "every edge has exactly two triangles.\n"

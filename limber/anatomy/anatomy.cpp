@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "limber/anatomy/body_reading.h"
+#include "limber/anatomy/certain_states.h"
 #include "limber/anatomy/joint_words.h"
 #include "limber/anatomy/part_maker.h"
 
@@ -15,52 +16,7 @@ namespace {
 
 constexpr std::array<std::string_view, kPartKinds> kKindNames = {"trunk", "neck", "head", "tail",   "leg",
                                                                  "arm",   "wing", "fin",  "finger", "ear",
-                                                                 "jaw",   "eye",  "hair", "prop",   "other"};
-
-constexpr std::uint32_t kAllStates = (1u << kPartStates) - 1;
-
-bool isDeclared(const Joint& joint) {
-  return !joint.declaredBone.empty();
-}
-
-std::uint32_t statesWhere(const auto& fits) {
-  std::uint32_t mask = 0;
-  for (std::size_t s = 0; s < kPartStates; ++s) {
-    if (fits(static_cast<PartState>(s))) mask |= 1u << s;
-  }
-  return mask;
-}
-
-std::uint32_t statesOfBone(std::string_view bone) {
-  const BodyPart part = bodyPartNamed(bone).value_or(body_part::kTrunk);  // no other has a name for its middle joints
-  return statesWhere([&](PartState state) {
-    const bool isLimb = part.kind == PartKind::kLeg || part.kind == PartKind::kArm;
-    return kindOf(state) == part.kind && (!isLimb || segmentOf(state) == part.segment);
-  });
-}
-
-// #half joints: which states each may have, as the user has set and, where names have a say, as the file declares.
-std::vector<std::uint32_t> allowedStates(const BodyReading& reading, const AnatomyOptions& options) {
-  std::vector<std::uint32_t> ofJoint;
-  for (const Joint& joint : reading.skeleton.joints) {
-    ofJoint.push_back(options.names && isDeclared(joint) ? statesOfBone(joint.declaredBone) : kAllStates);
-  }
-  std::vector<bool> isFixed(ofJoint.size());
-  for (const FixedLabel& label : options.fixed) {
-    const std::uint32_t mask = statesWhere([&](PartState state) { return kindOf(state) == label.kind; });
-    if (label.joint >= ofJoint.size() || mask == 0) continue;
-    ofJoint[label.joint] = mask;
-    isFixed[label.joint] = true;
-  }
-  std::vector<std::uint32_t> allowed;
-  for (const HalfJoint& half : reading.body.joints) {
-    std::uint32_t both = ofJoint[half.joint];
-    if (half.partner && isFixed[*half.partner] && !isFixed[half.joint]) both = ofJoint[*half.partner];
-    if (half.partner && (both & ofJoint[*half.partner]) != 0) both &= ofJoint[*half.partner];
-    allowed.push_back(both);
-  }
-  return allowed;
-}
+                                                                 "jaw",   "eye",  "hair", "prop",   "attachment", "other"};
 
 // Under each guess of the axes, and the field of the likeliest.
 struct Guesses {
@@ -69,8 +25,7 @@ struct Guesses {
   std::optional<PartField> field;
 };
 
-Guesses readUnderEach(const BodyReading& reading, std::span<const std::uint32_t> allowed) {
-  const PartWeights& weights = fittedPartWeights();
+Guesses readUnderEach(const BodyReading& reading, std::span<const std::uint32_t> allowed, const PartWeights& weights) {
   StateScores steady(reading.measures.size());
   addScores(reading.measures.steadyFeatures(), weights, steady);
   Guesses guesses;
@@ -86,9 +41,69 @@ Guesses readUnderEach(const BodyReading& reading, std::span<const std::uint32_t>
   return guesses;
 }
 
+bool isDeclared(const Joint& joint) {
+  return !joint.declaredBone.empty();
+}
+
 Skeleton withoutDeclaredBones(Skeleton skeleton) {
   for (Joint& joint : skeleton.joints) joint.declaredBone = {};
   return skeleton;
+}
+
+Anatomy read(const Skeleton& skeleton, const Pose& pose, const AnatomyOptions& options, bool conventions,
+             const PartWeights& weights) {
+  Anatomy anatomy;
+  anatomy.partOf.resize(skeleton.jointCount());
+  if (skeleton.joints.empty()) return anatomy;
+  const BodyReading reading(skeleton, pose, options.names, conventions);
+  const Guesses guesses = readUnderEach(reading, certainStates(reading, options), weights);
+  const bool isPossible = guesses.field->logSum() > static_cast<double>(kNever) / 2;
+  // What names are certain of goes first, then what the file declares.
+  if (!isPossible && reading.convention) return read(skeleton, pose, options, false, weights);
+  if (!isPossible && options.names && std::any_of(skeleton.joints.begin(), skeleton.joints.end(), isDeclared)) {
+    anatomy = read(withoutDeclaredBones(skeleton), pose, options, true, weights);
+    anatomy.believesFile = false;
+    return anatomy;
+  }
+  const auto& [scores, best, field] = guesses;
+  double all = 0, sameSides = 0;
+  const Axes& axes = reading.guesses[best];
+  for (std::size_t g = 0; g < scores.size(); ++g) {
+    const double share = std::exp(scores[g] - scores[best]);
+    all += share;
+    if (reading.guesses[g].left().dot(axes.left()) > 0) sameSides += share;
+  }
+
+  anatomy.axes = axes;
+  if (reading.convention) {
+    anatomy.convention = reading.convention->convention->name;
+    anatomy.contradicted = reading.convention->contradicted;
+  }
+  for (Index j = 0; j < skeleton.jointCount() && !anatomy.declaredHips; ++j) {
+    if (reading.declared[j] && reading.declared[j]->role == JointRole::kHips) anatomy.declaredHips = j;
+  }
+  anatomy.confidence = 1 / all;
+  anatomy.parts = partsOf(reading, {axes, sameSides / all, field->best(), field->marginals()});
+  anatomy.ground = std::numeric_limits<double>::infinity();
+  Box box;
+  for (std::size_t p = 0; p < anatomy.parts.size(); ++p) {
+    Part& part = anatomy.parts[p];
+    for (const Index joint : part.branches) anatomy.partOf[joint] = p;
+    for (const Index joint : part.joints) {
+      anatomy.partOf[joint] = p;
+      box.add(reading.positions[joint]);
+      anatomy.ground = std::min(anatomy.ground, axes.up.dot(reading.positions[joint]));
+    }
+    const bool byUser = std::any_of(options.fixed.begin(), options.fixed.end(), [&](const FixedLabel& label) {
+      return part.has(label.joint) && part.kind == label.kind;
+    });
+    const bool named = options.names && std::any_of(part.joints.begin(), part.joints.end(),
+                                                    [&](Index joint) { return reading.words[joint].word != 0; });
+    part.evidence = byUser ? Evidence::kUser : named ? Evidence::kBoth : Evidence::kForm;
+  }
+  if (box.empty()) anatomy.ground = 0;
+  anatomy.size = box.empty() ? 0 : box.diagonal();
+  return anatomy;
 }
 
 }  // namespace
@@ -147,49 +162,12 @@ Anatomy readAnatomy(const Skeleton& skeleton, const AnatomyOptions& options) {
 }
 
 Anatomy readAnatomy(const Skeleton& skeleton, const Pose& pose, const AnatomyOptions& options) {
-  Anatomy anatomy;
-  anatomy.partOf.resize(skeleton.jointCount());
-  if (skeleton.joints.empty()) return anatomy;
-  const BodyReading reading(skeleton, pose, options.names);
-  const Guesses guesses = readUnderEach(reading, allowedStates(reading, options));
-  const bool isPossible = guesses.field->logSum() > static_cast<double>(kNever) / 2;
-  if (!isPossible && options.names && std::any_of(skeleton.joints.begin(), skeleton.joints.end(), isDeclared)) {
-    anatomy = readAnatomy(withoutDeclaredBones(skeleton), pose, options);
-    anatomy.believesFile = false;
-    return anatomy;
-  }
-  const auto& [scores, best, field] = guesses;
-  double all = 0, sameSides = 0;
-  const Axes& axes = reading.guesses[best];
-  for (std::size_t g = 0; g < scores.size(); ++g) {
-    const double share = std::exp(scores[g] - scores[best]);
-    all += share;
-    if (reading.guesses[g].left().dot(axes.left()) > 0) sameSides += share;
-  }
+  return readAnatomyWith(fittedPartWeights(), skeleton, pose, options);
+}
 
-  anatomy.axes = axes;
-  anatomy.confidence = 1 / all;
-  anatomy.parts = partsOf(reading, {axes, sameSides / all, field->best(), field->marginals()});
-  anatomy.ground = std::numeric_limits<double>::infinity();
-  Box box;
-  for (std::size_t p = 0; p < anatomy.parts.size(); ++p) {
-    Part& part = anatomy.parts[p];
-    for (const Index joint : part.branches) anatomy.partOf[joint] = p;
-    for (const Index joint : part.joints) {
-      anatomy.partOf[joint] = p;
-      box.add(reading.positions[joint]);
-      anatomy.ground = std::min(anatomy.ground, axes.up.dot(reading.positions[joint]));
-    }
-    const bool byUser = std::any_of(options.fixed.begin(), options.fixed.end(), [&](const FixedLabel& label) {
-      return part.has(label.joint) && part.kind == label.kind;
-    });
-    const bool named = options.names && std::any_of(part.joints.begin(), part.joints.end(),
-                                                    [&](Index joint) { return reading.words[joint].word != 0; });
-    part.evidence = byUser ? Evidence::kUser : named ? Evidence::kBoth : Evidence::kForm;
-  }
-  if (box.empty()) anatomy.ground = 0;
-  anatomy.size = box.empty() ? 0 : box.diagonal();
-  return anatomy;
+Anatomy readAnatomyWith(const PartWeights& weights, const Skeleton& skeleton, const Pose& pose,
+                        const AnatomyOptions& options) {
+  return read(skeleton, pose, options, true, weights);
 }
 
 Skeleton believedSkeleton(Skeleton skeleton, const Anatomy& anatomy) {

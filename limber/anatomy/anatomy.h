@@ -28,11 +28,12 @@ enum class PartKind {
   kEye,
   kHair,
   kProp,
+  kAttachment,  // clothes, straps, breasts, leaf joints, controls: what belongs to no limb and moves with its carrier
   kOther
 };
 enum class Side { kCenter, kLeft, kRight };  // the body's own
 
-inline constexpr std::size_t kPartKinds = 15;  // of PartKind
+inline constexpr std::size_t kPartKinds = 16;  // of PartKind
 inline constexpr double kDoubtful = 0.75;      // probability: of what is less sure one in four may be wrong
 
 std::string_view nameOf(PartKind kind);  // "leg"
@@ -77,6 +78,9 @@ struct Anatomy {
   std::vector<std::optional<std::size_t>> partOf;  // #J
   double confidence = 0;                           // of the axes and of which side is left
   bool believesFile = true;                        // false: no body can have the bones that the file declares
+  std::string_view convention;                     // whose names are certain here, "Mixamo"; empty: nobody's
+  std::optional<Index> declaredHips;               // what the file or the convention calls the hips
+  std::vector<Index> contradicted;                 // joints whose names in that convention the tree contradicts
 
   const Part* find(PartKind kind, Side side = Side::kCenter, Index pair = 0) const;
   Index pairsOf(PartKind kind) const;  // how many pairs (or single ones) there are

@@ -35,15 +35,83 @@ std::vector<Axes> guessesFor(const Vec3& lateral) {
   return guesses;
 }
 
+// What a bone of VRM is; a joint of the spine where it is one of these.
+NamedRole roleOfBone(std::string_view bone) {
+  const BodyPart part = bodyPartNamed(bone).value_or(body_part::kTrunk);
+  const auto role = [&]() -> JointRole {
+    switch (part.kind) {
+      case PartKind::kNeck:
+        return JointRole::kNeck;
+      case PartKind::kHead:
+        return JointRole::kHead;
+      case PartKind::kJaw:
+        return JointRole::kJaw;
+      case PartKind::kEye:
+        return JointRole::kEye;
+      case PartKind::kFinger:
+        return static_cast<JointRole>(static_cast<int>(JointRole::kThumb) + static_cast<int>(part.pair));
+      case PartKind::kArm:
+        return part.segment == Segment::kBase     ? JointRole::kCollar
+               : part.segment == Segment::kUpper  ? JointRole::kUpperArm
+               : part.segment == Segment::kMiddle ? JointRole::kLowerArm
+                                                  : JointRole::kHand;
+      case PartKind::kLeg:
+        return part.segment == Segment::kUpper    ? JointRole::kUpperLeg
+               : part.segment == Segment::kMiddle ? JointRole::kLowerLeg
+               : part.segment == Segment::kEnd    ? JointRole::kFoot
+                                                  : JointRole::kToes;
+      default:
+        return part.segment == Segment::kBase ? JointRole::kHips : JointRole::kTrunk;
+    }
+  };
+  return {role(), part.side, 0};
+}
+
+// #J what is certain of each joint: the bone that its file declares it to be, else what its convention calls it.
+std::vector<std::optional<NamedRole>> declaredRoles(const Skeleton& skeleton,
+                                                    const std::optional<ConventionMatch>& convention) {
+  std::vector<std::optional<NamedRole>> roles(skeleton.joints.size());
+  if (convention) roles = convention->roles;
+  for (std::size_t j = 0; j < roles.size(); ++j) {
+    if (!skeleton.joints[j].declaredBone.empty()) roles[j] = roleOfBone(skeleton.joints[j].declaredBone);
+  }
+  return roles;
+}
+
+std::vector<JointWords> wordsOf(const Skeleton& skeleton, std::span<const std::optional<NamedRole>> declared) {
+  std::vector<JointWords> words = wordsOfJoints(skeleton);
+  for (std::size_t j = 0; j < words.size(); ++j) {
+    if (declared[j]) words[j] = wordsOfRole(*declared[j]);
+  }
+  return words;
+}
+
+std::vector<std::optional<NamedPartner>> partnersOf(const Skeleton& skeleton, std::span<const JointWords> words,
+                                                    const std::optional<ConventionMatch>& convention) {
+  std::vector<std::optional<NamedPartner>> partners = partnersByName(skeleton, words);
+  if (!convention) return partners;
+  for (std::size_t j = 0; j < partners.size(); ++j) {
+    const std::optional<Index>& partner = convention->partners[j];
+    if (!partner) continue;
+    for (const Index old : {static_cast<Index>(j), *partner}) {
+      if (partners[old]) partners[partners[old]->partner].reset();
+      partners[old].reset();
+    }
+    partners[j] = NamedPartner{*partner, convention->roles[j]->side == Side::kLeft};
+    partners[*partner] = NamedPartner{static_cast<Index>(j), !partners[j]->isLeft};
+  }
+  return partners;
+}
+
 // Positive where most declared bones of the side that `lateral` points to are left ones, negative where most are right
 // ones, 0 where no pair is declared.
-int declaredLeft(const Skeleton& skeleton, const HalfBody& body, std::span<const JointWords> words) {
+int declaredLeft(const HalfBody& body, std::span<const std::optional<NamedRole>> declared) {
   int votes = 0;
   for (const HalfJoint& half : body.joints) {
     if (!half.partner) continue;
     for (const auto& [joint, sign] : {std::pair(half.joint, 1), std::pair(*half.partner, -1)}) {
-      if (skeleton.joints[joint].declaredBone.empty() || words[joint].side == Side::kCenter) continue;
-      votes += words[joint].side == Side::kLeft ? sign : -sign;
+      if (!declared[joint] || declared[joint]->side == Side::kCenter) continue;
+      votes += declared[joint]->side == Side::kLeft ? sign : -sign;
     }
   }
   return votes;
@@ -51,16 +119,19 @@ int declaredLeft(const Skeleton& skeleton, const HalfBody& body, std::span<const
 
 }  // namespace
 
-BodyReading::BodyReading(const Skeleton& read, const Pose& pose, bool names)
+BodyReading::BodyReading(const Skeleton& read, const Pose& pose, bool names, bool conventions)
     : skeleton(read),
-      words(names ? wordsOfJoints(skeleton) : std::vector<JointWords>()),
+      convention(names && conventions ? findConvention(skeleton) : std::nullopt),
+      declared(names ? declaredRoles(skeleton, convention)
+                     : std::vector<std::optional<NamedRole>>(skeleton.joints.size())),
+      words(names ? wordsOf(skeleton, declared) : std::vector<JointWords>()),
       positions(finitePositions(skeleton, pose)),
       tree(withLooseFeetJoined(skeleton, positions, Vec3::UnitY())),
       body(foldBody(tree, positions,
-                    names ? partnersByName(skeleton, words) : std::vector<std::optional<NamedPartner>>())),
+                    names ? partnersOf(skeleton, words, convention) : std::vector<std::optional<NamedPartner>>())),
       measures(body, words),
       guesses(guessesFor(body.lateral)) {
-  const int left = body.sidesByName ? 1 : names ? declaredLeft(skeleton, body, words) : 0;
+  const int left = body.sidesByName ? 1 : declaredLeft(body, declared);
   std::erase_if(guesses, [&](const Axes& guess) { return left * guess.left().dot(body.lateral) < 0; });
   if (body.hasPairs) return;
   const std::vector<Axes> across = guessesFor(Vec3::UnitZ());

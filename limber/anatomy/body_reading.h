@@ -11,13 +11,16 @@ namespace limber {
 
 // The skeleton and what it is made of must outlive this; it stays where it was made.
 struct BodyReading {
-  BodyReading(const Skeleton& read, const Pose& pose, bool names);
+  // conventions: whether names that are a convention's (naming_convention.h) are certain; else they are words as others.
+  BodyReading(const Skeleton& read, const Pose& pose, bool names, bool conventions = true);
   BodyReading(const BodyReading&) = delete;
   BodyReading& operator=(const BodyReading&) = delete;
 
   const Skeleton& skeleton;
-  std::vector<JointWords> words;  // #J, empty where names have no say
-  std::vector<Vec3> positions;    // #J
+  std::optional<ConventionMatch> convention;       // of the names, where they have a say
+  std::vector<std::optional<NamedRole>> declared;  // #J, what is certain: by the file, else by the convention
+  std::vector<JointWords> words;                   // #J, empty where names have no say
+  std::vector<Vec3> positions;                     // #J
   JointTree tree;
   HalfBody body;
   BodyMeasures measures;
@@ -32,5 +35,9 @@ inline constexpr double kAxesByLabels = 0.3;
 
 // Logarithm of a guess's probability, but for a constant: by its labellings, names for sides and the habits of files.
 double axesScore(const BodyMeasures& measures, const Axes& guess, const PartField& field, const PartWeights& weights);
+
+// readAnatomy with other weights than the fitted ones: for the tool that fits them.
+Anatomy readAnatomyWith(const PartWeights& weights, const Skeleton& skeleton, const Pose& pose,
+                        const AnatomyOptions& options);
 
 }  // namespace limber

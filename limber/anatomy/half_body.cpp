@@ -22,6 +22,7 @@ constexpr double kNamedCost = 0.1;    // of partners by name that are not alike 
 constexpr double kLeastPaired = 0.07;
 constexpr double kContradict = 0.2;  // share of named limbs that lie the other way round than the rest
 constexpr double kClearly = 1.25;    // times the length that has partners
+constexpr double kNearPlane = 0.01;  // of the body's size: what is that near to the plane lies in it
 constexpr double kInPlane = 0.35;    // sine of the angle to the plane, up to which what has no partner lies in it
 
 class Folder {
@@ -239,10 +240,26 @@ class Folder {
       if (used[child]) continue;
       const Vec3 offset = middle_[child] - from;
       const double aside = std::abs(across(middle_[child]) - plane);
+      // Of a spine with fingers on one hand alone the middle lies beside the plane, the spine itself does not.
       const bool inPlane = !parent ? aside < 0.05 * size_ || length_[child] > 0.5 * size_
-                                   : aside < kInPlane * offset.norm() + 0.01 * size_;
+                                   : aside < kInPlane * offset.norm() + kNearPlane * size_ ||
+                                         (liesInPlane(positions_[child], from, plane) && straddles(child, plane));
       open.push_back({add(child, std::nullopt, inPlane ? HalfKind::kMiddle : HalfKind::kSingle, parent, plane), plane});
     }
+  }
+
+  bool liesInPlane(const Vec3& point, const Vec3& from, double plane) const {
+    return std::abs(across(point) - plane) < kInPlane * (point - from).norm() + kNearPlane * size_;
+  }
+
+  // Whether it carries something on both sides of the plane.
+  bool straddles(Index joint, double plane) const {
+    bool left = false, right = false;
+    for (const Index below : tree_.subtree(joint)) {
+      left = left || across(positions_[below]) > plane + 2 * kNearPlane * size_;
+      right = right || across(positions_[below]) < plane - 2 * kNearPlane * size_;
+    }
+    return left && right;
   }
 
   void placePairsChildren(const HalfJoint& half, const Open& at, std::vector<Open>& open) {

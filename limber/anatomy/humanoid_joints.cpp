@@ -19,7 +19,10 @@ class HumanoidReader {
     for (const HumanoidJoint& declared : declaredJoints(skeleton_)) give(declared.bone, declared.joint, 1);
     // Where a joint on the ground carries legs and spine, the hips are the one on the way up that is called so.
     std::vector<Index> trunk = body_.trunk;
-    const auto isHips = [&](Index joint) { return saysHips(readNameOf(skeleton_.joints[joint])); };
+    const auto isHips = [&](Index joint) {
+      const std::optional<Index>& declared = body_.anatomy.declaredHips;
+      return declared ? declared == joint : saysHips(readNameOf(skeleton_.joints[joint]));
+    };
     const auto named = std::find_if(trunk.rbegin(), trunk.rend(), isHips);
     const std::optional<Index> hips = named == trunk.rend() ? body_.pelvis : std::optional(*named);
     trunk.erase(trunk.begin(), named.base());

@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -15,6 +16,16 @@ namespace limber {
 namespace {
 
 using detail::BodyWord;
+
+std::vector<std::string_view> splitAtSpaces(std::string_view text) {
+  std::vector<std::string_view> words;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find(' '), text.size());
+    if (end > 0) words.push_back(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return words;
+}
 
 constexpr std::size_t kBodyWords = static_cast<std::size_t>(BodyWord::kLittle) + 1;  // of BodyWord
 
@@ -43,83 +54,74 @@ enum ExtraWord {
 };
 static_assert(kBodyWords + kMetapodial + 1 == kJointWords);
 
-constexpr std::array<std::pair<std::string_view, ExtraWord>, 75> kExtraWords = {{
-    {"tail", kTail},
-    {"wing", kWing},
-    {"wings", kWing},
-    {"fin", kFin},
-    {"fins", kFin},
-    {"flipper", kFin},
-    {"pectoral", kFin},
-    {"dorsal", kFin},
-    {"ear", kEar},
-    {"ears", kEar},
-    {"mouth", kMouth},
-    {"snout", kMouth},
-    {"beak", kMouth},
-    {"lip", kMouth},
-    {"lips", kMouth},
-    {"bill", kMouth},
-    {"teeth", kMouth},
-    {"chin", kMouth},
-    {"jawbone", kMouth},
-    {"hair", kHair},
-    {"mane", kHair},
-    {"ponytail", kHair},
-    {"braid", kHair},
-    {"bang", kHair},
-    {"bangs", kHair},
-    {"beard", kHair},
-    {"finger", kDigit},
-    {"fingers", kDigit},
-    {"digit", kDigit},
-    {"prop", kProp},
-    {"weapon", kProp},
-    {"gun", kProp},
-    {"sword", kProp},
-    {"shield", kProp},
-    {"item", kProp},
-    {"bag", kProp},
-    {"backpack", kProp},
-    {"knife", kProp},
-    {"axe", kProp},
-    {"bow", kProp},
-    {"slot", kProp},
-    {"mug", kProp},
-    {"staff", kProp},
-    {"root", kRoot},
-    {"armature", kRoot},
-    {"master", kRoot},
-    {"main", kRoot},
-    {"global", kRoot},
-    {"cog", kRoot},
-    {"reference", kRoot},
-    {"feather", kFeather},
-    {"feathers", kFeather},
-    {"horn", kHorn},
-    {"antenna", kHorn},
-    {"antler", kHorn},
-    {"spike", kHorn},
-    {"skirt", kCloth},
-    {"cape", kCloth},
-    {"cloth", kCloth},
-    {"robe", kCloth},
-    {"scapula", kBlade},
-    {"blade", kBlade},
-    {"hoof", kHoof},
-    {"paw", kHoof},
-    {"claw", kClaw},
-    {"body", kBody},
-    {"eyelid", kEyelid},
-    {"eyebrow", kEyelid},
-    {"breast", kBreast},
-    {"tongue", kTongue},
-    {"hock", kMetapodial},
-    {"metatarsal", kMetapodial},
-    {"metatarsals", kMetapodial},
-    {"carpal", kMetapodial},
-    {"metacarpal", kMetapodial},
-}};
+// In the languages that artists write them in; words that also mean a part of the body are left out.
+struct ExtraWords {
+  ExtraWord meaning;
+  std::string_view words;  // separated by spaces
+};
+constexpr ExtraWords kExtraWords[] = {
+    {kTail, "tail shippo sippo schwanz schweif hvost khvost"},
+    {kWing, "wing wings tsubasa fluegel aile krylo"},
+    {kFin, "fin fins flipper pectoral dorsal"},
+    {kEar, "ear ears mimi ohr oreille oreja uho"},
+    {kMouth, "mouth snout beak lip lips bill teeth chin jawbone"},
+    {kHair, "hair hairs mane ponytail pony twintail pigtail braid bang bangs fringe sidelock sideburn ahoge wig beard mustache "
+            "kami maegami haar haare zopf cheveux pelo cabello coleta trenza volosy kosa"},
+    {kDigit, "finger fingers digit"},
+    {kProp, "prop weapon gun sword shield item bag backpack knife axe bow slot mug staff holster sheath scabbard quiver lantern "
+            "wand spear hammer schwert arme espada mech"},
+    {kRoot, "root armature master main global cog reference"},
+    {kFeather, "feather feathers"},
+    {kHorn, "horn horns antenna antler spike tsuno corne cuerno"},
+    {kCloth, "skirt cape cloth robe cloak mantle mantel scarf muffler coat jacket dress hem apron frill lace tunic tabard loincloth "
+             "sash obi sleeve cuff hood tie necktie ribbon strap belt buckle string cord rope tassel pendant necklace earring pouch "
+             "hat helmet veil glasses pauldron armor tasset himo suso sode manto fuku jupe kleid umhang kapuze schal falda vestido "
+             "capa capucha yubka plash remen qun"},
+    {kBlade, "scapula blade"},
+    {kHoof, "hoof paw"},
+    {kClaw, "claw"},
+    {kBody, "body"},
+    {kEyelid, "eyelid eyebrow"},
+    {kBreast, "breast breasts boob boobs bust tit mune oppai butt buttock buttocks glute siri shiri ribs busen sein seno"},
+    {kTongue, "tongue"},
+    {kMetapodial, "hock metatarsal metatarsals carpal metacarpal"},
+};
+
+// Words of scripts that do not separate them: any name that contains one.
+constexpr ExtraWords kContained[] = {
+    {kCloth, "スカート 裙 치마 スカーフ マント 披风 斗篷 披風 망토 コート ドレス 服 衣 裾 袖 帯 帶 ベルト 벨트 リボン 리본 蝴蝶 ネクタイ 领带 マフラー 围巾 "
+             "フード フリル 飘带 紐 ひも 帽 帽子 юбка плащ"},
+    {kHair, "髪 髮 头发 前发 刘海 马尾 辫 アホ毛 あほ毛 もみあげ ツインテ おさげ 三つ編み 머리카락 헤어 волос"},
+    {kBreast, "胸 乳 おっぱい 가슴 尻 臀"},
+    {kTail, "しっぽ 尻尾 尾 꼬리 хвост"},
+    {kEar, "耳 귀"},
+    {kWing, "翼 羽 翅 날개"},
+    {kHorn, "角 뿔"},
+    {kProp, "剣 剑 刀 銃 枪 武器 무기 меч"},
+};
+
+std::optional<ExtraWord> extraWordOf(const std::string& word) {
+  static const std::unordered_map<std::string_view, ExtraWord> kMeanings = [] {
+    std::unordered_map<std::string_view, ExtraWord> meanings;
+    for (const ExtraWords& row : kExtraWords) {
+      for (const std::string_view each : splitAtSpaces(row.words)) meanings.emplace(each, row.meaning);
+    }
+    return meanings;
+  }();
+  const auto found = kMeanings.find(word);
+  return found == kMeanings.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::optional<ExtraWord> containedWordOf(std::string_view name) {
+  const auto isForeign = [](char c) { return static_cast<unsigned char>(c) > 0x7f; };
+  if (std::none_of(name.begin(), name.end(), isForeign)) return std::nullopt;
+  for (const ExtraWords& row : kContained) {
+    for (const std::string_view each : splitAtSpaces(row.words)) {
+      if (name.find(each) != std::string_view::npos) return row.meaning;
+    }
+  }
+  return std::nullopt;
+}
 
 constexpr std::array<std::pair<std::string_view, NameMark>, 25> kMarks = {{
     {"front", NameMark::kFront},       {"fore", NameMark::kFront},    {"hind", NameMark::kHind},
@@ -189,6 +191,103 @@ std::string_view readNameOf(const Joint& joint) {
   return joint.declaredBone.empty() ? std::string_view(joint.name) : joint.declaredBone;
 }
 
+JointWords wordsOfRole(const NamedRole& role) {
+  JointWords words;
+  words.side = role.side;
+  const auto body = [&](BodyWord word) { words.word = static_cast<std::size_t>(word); };
+  const auto extra = [&](ExtraWord word) { words.word = kBodyWords + static_cast<std::size_t>(word); };
+  switch (role.role) {
+    case JointRole::kRoot:
+      extra(kRoot);
+      break;
+    case JointRole::kHelper:
+    case JointRole::kTip:
+      words.marks[static_cast<std::size_t>(role.role == JointRole::kTip ? NameMark::kEnd : NameMark::kHelper)] = true;
+      break;
+    case JointRole::kAttachment:
+      extra(kCloth);
+      break;
+    case JointRole::kHips:
+      body(BodyWord::kHips);
+      break;
+    case JointRole::kTrunk:
+    case JointRole::kSpineToHead:
+      body(BodyWord::kTrunk);
+      break;
+    case JointRole::kNeck:
+      body(BodyWord::kNeck);
+      break;
+    case JointRole::kHead:
+      body(BodyWord::kHead);
+      break;
+    case JointRole::kJaw:
+      body(BodyWord::kJaw);
+      break;
+    case JointRole::kEye:
+      body(BodyWord::kEye);
+      break;
+    case JointRole::kCollar:
+      body(BodyWord::kCollar);
+      break;
+    case JointRole::kUpperArm:
+      body(BodyWord::kUpperArm);
+      break;
+    case JointRole::kLowerArm:
+      body(BodyWord::kLowerArm);
+      break;
+    case JointRole::kHand:
+      body(BodyWord::kHand);
+      break;
+    case JointRole::kLegBase:
+      body(BodyWord::kHip);
+      break;
+    case JointRole::kUpperLeg:
+      body(BodyWord::kUpperLeg);
+      break;
+    case JointRole::kLowerLeg:
+      body(BodyWord::kLowerLeg);
+      break;
+    case JointRole::kHock:
+    case JointRole::kPalm:
+      extra(kMetapodial);
+      break;
+    case JointRole::kFoot:
+      body(BodyWord::kFoot);
+      break;
+    case JointRole::kToes:
+      body(BodyWord::kToes);
+      break;
+    case JointRole::kThumb:
+      body(BodyWord::kThumb);
+      break;
+    case JointRole::kIndex:
+      body(BodyWord::kIndex);
+      break;
+    case JointRole::kMiddle:
+      body(BodyWord::kMiddle);
+      break;
+    case JointRole::kRing:
+      body(BodyWord::kRing);
+      break;
+    case JointRole::kLittle:
+      body(BodyWord::kLittle);
+      break;
+    case JointRole::kTail:
+      extra(kTail);
+      break;
+    case JointRole::kHair:
+      extra(kHair);
+      break;
+    case JointRole::kEar:
+      extra(kEar);
+      break;
+    case JointRole::kWing:
+      extra(kWing);
+      break;
+  }
+  return words;
+}
+
 bool saysHips(std::string_view name) {
   return readJointWords(name).word == static_cast<std::size_t>(BodyWord::kHips);
 }
@@ -196,7 +295,7 @@ bool saysHips(std::string_view name) {
 bool saysMetapodial(std::string_view name) {
   const std::vector<std::string> tokens = detail::wordsOfName(name);
   return std::any_of(tokens.begin(), tokens.end(),
-                     [](const std::string& token) { return lookUp(kExtraWords, token) == kMetapodial; });
+                     [](const std::string& token) { return extraWordOf(token) == kMetapodial; });
 }
 
 std::vector<JointWords> wordsOfJoints(const Skeleton& skeleton) {
@@ -246,10 +345,11 @@ JointWords readJointWords(std::string_view name) {
     const bool isNumber = std::isdigit(static_cast<unsigned char>(token.front())) != 0;
     if (isNumber && word) words.marks[static_cast<std::size_t>(NameMark::kNumbered)] = true;
     if (const std::optional<Side> side = sideOf(token); side && words.side == Side::kCenter) words.side = *side;
-    if (const std::optional<ExtraWord> found = lookUp(kExtraWords, token); found && !extra) extra = found;
+    if (const std::optional<ExtraWord> found = extraWordOf(token); found && !extra) extra = found;
     if (!mark) rest.append(rest.empty() ? "" : "_").append(token);
     word = word || !isNumber;
   }
+  if (!extra) extra = containedWordOf(name);
   if (whole.word != BodyWord::kNone) {
     words.word = static_cast<std::size_t>(whole.word);
     if (whole.side != detail::BodySide::kMiddle) words.side = sideOf(whole.side);

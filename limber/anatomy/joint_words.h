@@ -10,6 +10,7 @@
 
 #include "limber/anatomy/anatomy.h"
 #include "limber/anatomy/half_body.h"
+#include "limber/anatomy/naming_convention.h"
 
 namespace limber {
 
@@ -40,6 +41,9 @@ struct NameParts {
 };
 
 NameParts partsOfName(std::string_view name);
+
+// What is said of a joint that is known to be this; its marks are those of its name.
+JointWords wordsOfRole(const NamedRole& role);
 
 // Whether the name is one of the pelvis.
 bool saysHips(std::string_view name);

@@ -16,6 +16,10 @@ namespace {
 // fewer.
 constexpr double kAllFingers = 0.95, kSomeFingers = 0.7;
 
+// A limb beside which doubtful ones do not count, its probability; and of its length, what is as long and what does not
+// reach the ground. Set on the characters of shared/data/wild that are there to learn from.
+constexpr double kSure = 0.9, kAsLong = 0.6, kOffTheGround = 0.15;
+
 class PartMaker {
  public:
   PartMaker(const BodyReading& reading, const LabelledBody& labels)
@@ -44,6 +48,7 @@ class PartMaker {
     giveFeetToes();
     for (Part& part : parts_) completePath(part);
     dropToesBehind();
+    dropDoubtfulLimbs();
     number();
     order();
     return std::move(parts_);
@@ -81,7 +86,8 @@ class PartMaker {
 
   // Several of these may hang on one joint, and each is a part of its own; other parts have branches.
   static bool isOneOfMany(PartKind kind) {
-    return kind == PartKind::kFinger || kind == PartKind::kHair || kind == PartKind::kProp || kind == PartKind::kEar;
+    return kind == PartKind::kFinger || kind == PartKind::kHair || kind == PartKind::kProp || kind == PartKind::kEar ||
+           kind == PartKind::kAttachment;
   }
 
   void place(Index half) {
@@ -298,6 +304,40 @@ class PartMaker {
       const Vec3 offset = reading_.positions[*part.toes] - reading_.positions[*part.end];
       if (labels_.axes.front.dot(offset) < 0) part.toes.reset();
     }
+  }
+
+  // Beside a limb that is sure a doubtful one of the same kind counts only where it carries as much: of a pair of legs
+  // that the body stands on, straps and coats that hang beside them are attachments, and so are breasts beside arms.
+  void dropDoubtfulLimbs() {
+    for (const PartKind kind : {PartKind::kLeg, PartKind::kArm}) {
+      const Part* sure = nullptr;
+      for (const Part& part : parts_) {
+        const bool counts = part.kind == kind && part.upper && part.end && !part.joints.empty();
+        if (counts && part.confidence >= kSure && (!sure || lengthOf(part) > lengthOf(*sure))) sure = &part;
+      }
+      if (!sure) continue;
+      const double length = lengthOf(*sure), low = lowestOf(*sure);
+      for (Part& part : parts_) {
+        if (part.kind != kind || part.joints.empty() || part.confidence >= kDoubtful) continue;
+        const bool stands = kind == PartKind::kLeg && lowestOf(part) < low + kOffTheGround * length;
+        if (lengthOf(part) > kAsLong * length && (stands || kind == PartKind::kArm)) continue;
+        part.kind = PartKind::kAttachment;
+        for (std::optional<Index>* landmark : {&part.upper, &part.middle, &part.hock, &part.end, &part.toes})
+          landmark->reset();
+      }
+    }
+  }
+
+  double lengthOf(const Part& part) const {
+    double length = 0;
+    for (std::size_t i = 1; i < part.joints.size(); ++i)
+      length += (reading_.positions[part.joints[i]] - reading_.positions[part.joints[i - 1]]).norm();
+    return length;
+  }
+  double lowestOf(const Part& part) const {
+    double low = std::numeric_limits<double>::infinity();
+    for (const Index joint : part.joints) low = std::min(low, labels_.axes.up.dot(reading_.positions[joint]));
+    return low;
   }
 
   // Empties the one; what it carried hangs on the other.

@@ -32,15 +32,16 @@ enum class PartState : unsigned char {
   kEye,
   kHair,
   kProp,
+  kAttachment,
 };
-inline constexpr std::size_t kPartStates = 23;  // of PartState
+inline constexpr std::size_t kPartStates = 24;  // of PartState
 
 constexpr PartKind kindOf(PartState state) {
   constexpr std::array<PartKind, kPartStates> kKinds = {
       PartKind::kOther, PartKind::kTrunk, PartKind::kNeck, PartKind::kHead, PartKind::kTail, PartKind::kLeg,
       PartKind::kLeg,   PartKind::kLeg,   PartKind::kLeg,  PartKind::kLeg,  PartKind::kLeg,  PartKind::kArm,
       PartKind::kArm,   PartKind::kArm,   PartKind::kArm,  PartKind::kWing, PartKind::kFin,  PartKind::kFinger,
-      PartKind::kEar,   PartKind::kJaw,   PartKind::kEye,  PartKind::kHair, PartKind::kProp};
+      PartKind::kEar,   PartKind::kJaw,   PartKind::kEye,  PartKind::kHair, PartKind::kProp,   PartKind::kAttachment};
   return kKinds[static_cast<std::size_t>(state)];
 }
 

@@ -16,7 +16,7 @@ namespace limber {
 
 namespace {
 
-constexpr std::string_view kCheckFolder = "creatures/check";  // on which nothing was fitted
+constexpr std::array<std::string_view, 2> kCheckFolders = {"creatures/check", "wild/judge"};  // nothing was fitted to
 
 struct LabelledPart {
   std::set<Index> joints;
@@ -38,7 +38,7 @@ std::map<PartKey, LabelledPart> partsOf(const LabelledSkeleton& body) {
   for (Index j = 0; j < body.skeleton.jointCount(); ++j) {
     const JointLabel& label = body.labels[j];
     const PartKind kind = kindOf(label.state);
-    if (kind == PartKind::kOther) continue;
+    if (kind == PartKind::kOther || kind == PartKind::kAttachment) continue;
     const bool foot = kind == PartKind::kFinger && isOnFoot(body, j);
     LabelledPart& part = parts[{kind, label.side, label.pair, foot}];
     part.joints.insert(j);
@@ -104,6 +104,19 @@ void scoreBoth(const LabelledSkeleton& body, Both& scores) {
 
 }  // namespace
 
+void AnatomyScore::add(const AnatomyScore& other) {
+  skeletons += other.skeletons;
+  axes += other.axes;
+  parts += other.parts;
+  right += other.right;
+  landmarks += other.landmarks;
+  landmarksRight += other.landmarksRight;
+  for (std::size_t i = 0; i < said.size(); ++i) {
+    said[i] += other.said[i];
+    saidRight[i] += other.saidRight[i];
+  }
+}
+
 void addScore(const LabelledSkeleton& body, const Anatomy& anatomy, AnatomyScore& score) {
   ++score.skeletons;
   constexpr double kNear = 0.7;  // cosine of 45 degrees
@@ -111,6 +124,7 @@ void addScore(const LabelledSkeleton& body, const Anatomy& anatomy, AnatomyScore
   const std::map<PartKey, LabelledPart> truth = partsOf(body);
   std::set<PartKey> found;
   for (const Part& part : anatomy.parts) {
+    if (part.kind == PartKind::kAttachment) continue;
     const bool foot =
         part.kind == PartKind::kFinger && part.carrier && anatomy.parts[*part.carrier].kind == PartKind::kLeg;
     const PartKey key{part.kind, part.side, part.pair, foot};
@@ -159,7 +173,8 @@ std::vector<LabelledSkeleton> labelledSkeletons(std::string_view labels, const s
 std::string anatomyPage(const std::vector<LabelledSkeleton>& bodies, Progress& progress) {
   progress.stage("read bodies");
   const auto isCheck = [](const LabelledSkeleton& body) {
-    return std::string_view(body.file).starts_with(kCheckFolder);
+    return std::any_of(kCheckFolders.begin(), kCheckFolders.end(),
+                       [&](std::string_view folder) { return std::string_view(body.file).starts_with(folder); });
   };
   Both fitted, check, flat;
   std::array<Both, kDamages> damagedFitted, damagedCheck;

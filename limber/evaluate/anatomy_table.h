@@ -21,6 +21,8 @@ struct AnatomyScore {
   std::size_t landmarks = 0, landmarksRight = 0;
   // Of parts that were read with that confidence: how many, and how many of them are right. Bins of kConfidences.
   std::array<std::size_t, 6> said{}, saidRight{};
+
+  void add(const AnatomyScore& other);
 };
 inline constexpr std::array<double, 7> kConfidences = {0, 0.5, 0.7, 0.8, 0.9, 0.95, 1};
 
@@ -32,7 +34,7 @@ std::vector<LabelledSkeleton> labelledSkeletons(std::string_view labels, const s
                                                 Warnings& skipped);
 
 // A page in Markdown: parts right with names and without, whole and damaged in each way, of files below creatures/check
-// and of all others; and a table of how often what was said to be sure was right. Skeletons whose joints all hang on
+// and wild/judge and of all others; and a table of how often what was said to be sure was right. Skeletons whose joints all hang on
 // the root stand apart. The same bytes for the same files.
 std::string anatomyPage(const std::vector<LabelledSkeleton>& bodies, Progress& progress);
 

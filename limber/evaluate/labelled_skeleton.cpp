@@ -10,6 +10,7 @@
 #include "limber/anatomy/half_body.h"
 #include "limber/core/error.h"
 #include "limber/core/numbers.h"
+#include "limber/evaluate/attached_chains.h"
 
 namespace limber {
 
@@ -306,7 +307,8 @@ LabelledSkeleton labelled(const BodyLabels& labels, Skeleton skeleton) {
 
 std::string_view nameOf(Damage damage) {
   constexpr std::array<std::string_view, kDamages> kNames = {
-      "numbered", "mirrored", "turned", "rescaled", "stretched", "posed", "cropped", "joints added", "joints removed"};
+      "numbered", "mirrored", "turned", "rescaled", "stretched", "posed", "cropped", "joints added", "joints removed",
+      "attachments added"};
   return kNames[static_cast<std::size_t>(damage)];
 }
 
@@ -341,6 +343,9 @@ LabelledSkeleton damaged(LabelledSkeleton body, Damage damage, Random& random) {
       break;
     case Damage::kJointsRemoved:
       removeJoints(body, random);
+      break;
+    case Damage::kAttached:
+      addAttachments(body, random);
       break;
   }
   return body;

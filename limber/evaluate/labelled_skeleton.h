@@ -58,9 +58,10 @@ enum class Damage {
   kPosed,
   kCropped,
   kJointsAdded,
-  kJointsRemoved
+  kJointsRemoved,
+  kAttached  // clothes, hair and other attachments (attached_chains.h)
 };
-inline constexpr std::size_t kDamages = 9;
+inline constexpr std::size_t kDamages = 10;
 std::string_view nameOf(Damage damage);  // "numbered"
 LabelledSkeleton damaged(LabelledSkeleton body, Damage damage, Random& random);
 

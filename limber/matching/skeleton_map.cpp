@@ -117,7 +117,8 @@ class Matcher {
     if (from_.head && to_.head) add(body_part::kHead, {*from_.head}, {*to_.head}, confidence, by);
     for (const LimbPieces& limb : to_.limbs) {
       const Part& part = *limb.part;
-      if (part.kind == PartKind::kProp || part.kind == PartKind::kHair) continue;  // no two of them are the same thing
+      // No two of them are the same thing.
+      if (part.kind == PartKind::kProp || part.kind == PartKind::kHair || part.kind == PartKind::kAttachment) continue;
       // Legs are counted from behind where one body has more: those at the pelvis are alike.
       const Index more = part.kind == PartKind::kLeg ? from_.anatomy.pairsOf(PartKind::kLeg) : 0,
                   own = part.kind == PartKind::kLeg ? to_.anatomy.pairsOf(PartKind::kLeg) : 0;
@@ -505,6 +506,7 @@ class Matcher {
       const JointTree& tree = ofTarget ? targetTree_ : sourceTree_;
       const auto& matched = ofTarget ? matchedTarget_ : matchedSource_;
       for (const Part& part : body.anatomy.parts) {
+        if (part.kind == PartKind::kAttachment) continue;  // it moves with what it is attached to
         std::vector<Index> joints;
         for (const Index joint : part.joints) {
           if (matched.count(joint) == 0) joints.push_back(joint);

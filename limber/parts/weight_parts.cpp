@@ -16,7 +16,7 @@ constexpr double kOpenBelow = 0.5;  // lead below which a triangle may go to eit
 
 bool goesWithCarrier(PartKind kind) {
   return kind == PartKind::kFinger || kind == PartKind::kEar || kind == PartKind::kJaw || kind == PartKind::kEye ||
-         kind == PartKind::kHair;
+         kind == PartKind::kHair || kind == PartKind::kAttachment;
 }
 
 // The part of the body that a joint counts as.

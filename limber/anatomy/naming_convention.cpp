@@ -1,0 +1,598 @@
+#include "limber/anatomy/naming_convention.h"
+
+#include <algorithm>
+#include <bit>
+#include <cctype>
+#include <map>
+#include <unordered_map>
+
+#include <fmt/format.h>
+
+#include "limber/anatomy/joint_tree.h"
+
+namespace limber {
+
+namespace {
+
+// Of hips, trunk, head and, on each side, upper and lower leg, foot, upper and lower arm and hand: a body of which a
+// convention names fewer is not known by its names. A person without head and hands, or an upper body, has as many.
+constexpr std::size_t kMinCoreJoints = 8;
+// Fraction of what the names say that the tree may contradict.
+constexpr double kMaxContradicted = 0.25;
+// Fraction of joints that end in a number of their own where an exporter has put one behind every name.
+constexpr double kMinNumbered = 0.8;
+
+struct TableEntry {
+  std::uint16_t convention = 0;
+  NamedRole role;
+};
+
+bool isSeparator(char c) {
+  return c == '_' || c == '.' || c == '-' || c == ' ' || c == ':' || c == '|';
+}
+
+bool isDigit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+// A name in small letters without separators, with full-width letters and digits as plain ones, and where its words
+// begin.
+struct PlainName {
+  std::string text;
+  std::vector<std::size_t> starts;
+};
+
+PlainName plainNameOf(std::string_view name) {
+  PlainName plain;
+  plain.text.reserve(name.size());
+  bool begins = true;
+  char last = ' ';
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    char c = name[i];
+    // U+FF10 to U+FF5A: EF BC 90 to EF BD 9A.
+    if (c == '\xEF' && i + 2 < name.size() && (name[i + 1] == '\xBC' || name[i + 1] == '\xBD')) {
+      const int wide = (name[i + 1] == '\xBD' ? 0x40 : 0) + (static_cast<unsigned char>(name[i + 2]) - 0x80) + 0x20;
+      if (wide >= '0' && wide <= 'z') {
+        c = static_cast<char>(wide);
+        i += 2;
+      }
+    }
+    if (isSeparator(c)) {
+      begins = true;
+      last = c;
+      continue;
+    }
+    const bool upper = std::isupper(static_cast<unsigned char>(c)) != 0,
+               lastUpper = std::isupper(static_cast<unsigned char>(last)) != 0;
+    const bool nextLower = i + 1 < name.size() && std::islower(static_cast<unsigned char>(name[i + 1])) != 0;
+    if (begins || (upper && (!lastUpper || nextLower)) || (isDigit(last) && !isDigit(c))) {
+      plain.starts.push_back(plain.text.size());
+    }
+    begins = false;
+    last = c;
+    plain.text.push_back(static_cast<char>(std::tolower(static_cast<unsigned char>(c))));
+  }
+  return plain;
+}
+
+std::vector<std::string_view> wordsIn(std::string_view names) {
+  std::vector<std::string_view> words;
+  while (!names.empty()) {
+    const std::size_t end = std::min(names.find(' '), names.size());
+    if (end > 0) words.push_back(names.substr(0, end));
+    names.remove_prefix(std::min(end + 1, names.size()));
+  }
+  return words;
+}
+
+bool isNumbered(std::string_view pattern) {
+  return pattern.find('#') != std::string_view::npos;
+}
+
+bool isSided(std::string_view pattern) {
+  return pattern.find('@') != std::string_view::npos || pattern.find('%') != std::string_view::npos;
+}
+
+// A pattern written out: for one side, with a number or "#" for any, and with or without what stands in brackets.
+std::string writtenOut(const NamingConvention& convention, std::string_view pattern, Side side,
+                       std::optional<std::size_t> number, bool withBrackets) {
+  std::string name;
+  bool inBrackets = false;
+  for (std::size_t i = 0; i < pattern.size(); ++i) {
+    const char c = pattern[i];
+    if (c == '[' || c == ']') {
+      inBrackets = c == '[';
+    } else if (inBrackets && !withBrackets) {
+      continue;
+    } else if (c == '@' || c == '%') {
+      const auto& sides = c == '@' ? convention.sides : convention.otherSides;
+      name += sides[side == Side::kRight ? 1 : 0];
+    } else if (c == '#') {
+      std::size_t width = 1;
+      while (i + 1 < pattern.size() && pattern[i + 1] == '#') ++width, ++i;
+      if (number)
+        name += fmt::format("{:0{}}", *number, width);
+      else
+        name += '#';
+    } else {
+      name += c;
+    }
+  }
+  return name;
+}
+
+// Every name of every convention, plain, with "#" for any number.
+using Table = std::unordered_map<std::string, std::vector<TableEntry>>;
+
+const Table& table() {
+  static const Table kTable = [] {
+    Table all;
+    const std::span<const NamingConvention> conventions = namingConventions();
+    for (std::size_t c = 0; c < conventions.size(); ++c) {
+      const NamingConvention& convention = conventions[c];
+      for (const RoleNames& row : convention.roles) {
+        for (const std::string_view pattern : wordsIn(row.names)) {
+          const bool sided = isSided(pattern);
+          for (const Side side : {Side::kCenter, Side::kLeft, Side::kRight}) {
+            if (sided == (side == Side::kCenter)) continue;
+            for (const bool withBrackets : {false, true}) {
+              const std::string key = plainNameOf(writtenOut(convention, pattern, side, {}, withBrackets)).text;
+              std::vector<TableEntry>& entries = all[key];
+              // What a convention says first of a name stands.
+              if (!entries.empty() && entries.back().convention == c) continue;
+              entries.push_back({static_cast<std::uint16_t>(c), {row.role, side, row.pair}});
+            }
+          }
+        }
+      }
+    }
+    return all;
+  }();
+  return kTable;
+}
+
+// Calls `found(entries)` for the plain name, for it with each of its numbers as any, and with each of its numbers but
+// for the first digit as any ("finger01" is the second joint of "finger0").
+void lookUp(std::string_view plain, const auto& found) {
+  const Table& all = table();
+  std::string key(plain);
+  const auto tryKey = [&] {
+    if (const auto at = all.find(key); at != all.end()) found(at->second);
+  };
+  tryKey();
+  for (std::size_t i = 0; i < plain.size(); ++i) {
+    if (!isDigit(plain[i])) continue;
+    std::size_t end = i;
+    while (end < plain.size() && isDigit(plain[end])) ++end;
+    for (const std::size_t from : {i, i + 1}) {
+      if (from >= end) continue;
+      key.assign(plain.substr(0, from)).append("#").append(plain.substr(end));
+      tryKey();
+    }
+    i = end;
+  }
+}
+
+// The names of a skeleton without their namespaces, and without numbers that stand behind every one of them.
+std::vector<PlainName> plainNames(const Skeleton& skeleton) {
+  std::size_t numbered = 0;
+  const auto numberAt = [](std::string_view name) {
+    std::size_t end = name.size();
+    while (end > 0 && isDigit(name[end - 1])) --end;
+    return end > 1 && end < name.size() && name[end - 1] == '_' ? end - 1 : name.size();
+  };
+  for (const Joint& joint : skeleton.joints) numbered += numberAt(joint.name) < joint.name.size() ? 1 : 0;
+  const bool isNumbered =
+      static_cast<double>(numbered) > kMinNumbered * static_cast<double>(skeleton.joints.size());
+  std::vector<PlainName> names;
+  names.reserve(skeleton.joints.size());
+  for (const Joint& joint : skeleton.joints) {
+    std::string_view name = joint.name;
+    if (const std::size_t space = name.find_last_of(":|"); space != std::string_view::npos && space + 1 < name.size())
+      name.remove_prefix(space + 1);
+    if (isNumbered) name = name.substr(0, numberAt(name));
+    names.push_back(plainNameOf(name));
+  }
+  return names;
+}
+
+// A bit for each core joint; none for others.
+std::uint32_t coreBit(const NamedRole& named) {
+  const int side = named.side == Side::kRight ? 1 : 0;
+  const auto limb = [&](int segment) { return 1u << (3 + 2 * segment + side); };
+  switch (named.role) {
+    case JointRole::kHips:
+      return 1;
+    case JointRole::kTrunk:
+    case JointRole::kSpineToHead:
+      return 2;
+    case JointRole::kHead:
+      return 4;
+    case JointRole::kUpperLeg:
+      return limb(named.pair == 1 ? 6 : 0);
+    case JointRole::kLowerLeg:
+      return limb(named.pair == 1 ? 7 : 1);
+    case JointRole::kFoot:
+      return limb(named.pair == 1 ? 8 : 2);
+    case JointRole::kUpperArm:
+      return limb(3);
+    case JointRole::kLowerArm:
+      return limb(4);
+    case JointRole::kHand:
+      return limb(5);
+    case JointRole::kTail:
+      return 1u << 24;
+    case JointRole::kWing:
+      return 1u << (25 + side);
+    default:
+      return 0;
+  }
+}
+
+// Whether enough of a body is named: an upper and a lower leg and, of people, arm, of animals two pairs of legs.
+bool isWhole(std::uint32_t core) {
+  const auto named = [&](int segment) { return (core >> (3 + 2 * segment) & 3u) != 0; };
+  const bool limbs = named(0) && named(1) && ((named(3) && named(4)) || (named(6) && named(7)));
+  return limbs && static_cast<std::size_t>(std::popcount(core)) >= kMinCoreJoints;
+}
+
+// Which convention has most of the names when they are read behind one prefix.
+struct Vote {
+  std::size_t convention = 0, named = 0;
+  std::uint32_t core = 0;
+};
+
+class Finder {
+ public:
+  explicit Finder(const Skeleton& skeleton) : skeleton_(skeleton), names_(plainNames(skeleton)) {}
+
+  std::optional<ConventionMatch> find() const {
+    std::string prefix;
+    Vote best = voteFor(prefix);
+    if (!isWhole(best.core)) {
+      for (const std::string& other : commonPrefixes()) {
+        const Vote vote = voteFor(other);
+        if (std::pair(isWhole(vote.core), vote.named) <= std::pair(isWhole(best.core), best.named)) continue;
+        best = vote;
+        prefix = other;
+      }
+    }
+    if (!isWhole(best.core)) return std::nullopt;
+    ConventionMatch match;
+    match.convention = &namingConventions()[best.convention];
+    match.roles.resize(names_.size());
+    for (std::size_t j = 0; j < names_.size(); ++j) match.roles[j] = roleOf(j, prefix, best.convention);
+    match.partners = partnersIn(match);
+    return match;
+  }
+
+ private:
+  // The name with the other side in place of its own is that of a joint of the same role.
+  std::vector<std::optional<Index>> partnersIn(const ConventionMatch& match) const {
+    std::unordered_map<std::string, Index> rights;
+    for (Index j = 0; j < names_.size(); ++j) {
+      if (match.roles[j] && match.roles[j]->side == Side::kRight) rights.emplace(names_[j].text, j);
+    }
+    std::vector<std::optional<Index>> partners(names_.size());
+    for (Index j = 0; j < names_.size(); ++j) {
+      if (!match.roles[j] || match.roles[j]->side != Side::kLeft) continue;
+      for (const auto& sides : {match.convention->sides, match.convention->otherSides}) {
+        const std::string left = plainNameOf(sides[0]).text, right = plainNameOf(sides[1]).text;
+        if (left.empty() || partners[j]) continue;
+        for (std::size_t at = names_[j].text.find(left); at != std::string::npos && !partners[j];
+             at = names_[j].text.find(left, at + 1)) {
+          const auto found = rights.find(std::string(names_[j].text).replace(at, left.size(), right));
+          if (found == rights.end() || match.roles[found->second]->role != match.roles[j]->role) continue;
+          partners[j] = found->second;
+          partners[found->second] = j;
+        }
+      }
+    }
+    return partners;
+  }
+
+  // What begins the names of many joints, before a word of theirs; the longest first.
+  std::vector<std::string> commonPrefixes() const {
+    std::map<std::string, std::size_t> counts;
+    for (const PlainName& name : names_) {
+      for (const std::size_t start : name.starts) {
+        if (start > 0) ++counts[name.text.substr(0, start)];
+      }
+    }
+    std::vector<std::string> prefixes;
+    for (const auto& [prefix, count] : counts) {
+      if (count >= kMinCoreJoints) prefixes.push_back(prefix);
+    }
+    std::stable_sort(prefixes.begin(), prefixes.end(),
+                     [&](const std::string& a, const std::string& b) { return counts[a] > counts[b]; });
+    constexpr std::size_t kMaxPrefixes = 6;  // "bip01", "bip01l" and so on: the commonest are tried
+    prefixes.resize(std::min(prefixes.size(), kMaxPrefixes));
+    return prefixes;
+  }
+
+  Vote voteFor(const std::string& prefix) const {
+    std::vector<Vote> votes(namingConventions().size());
+    for (std::size_t c = 0; c < votes.size(); ++c) votes[c].convention = c;
+    for (const PlainName& name : names_) {
+      if (!name.text.starts_with(prefix)) continue;
+      std::uint64_t counted = 0;
+      lookUp(std::string_view(name.text).substr(prefix.size()), [&](const std::vector<TableEntry>& entries) {
+        for (const TableEntry& entry : entries) {
+          if (counted >> entry.convention & 1) continue;
+          counted |= std::uint64_t{1} << entry.convention;
+          ++votes[entry.convention].named;
+          votes[entry.convention].core |= coreBit(entry.role);
+        }
+      });
+    }
+    const auto rank = [](const Vote& vote) { return std::pair(isWhole(vote.core), vote.named); };
+    return *std::max_element(votes.begin(), votes.end(), [&](const Vote& a, const Vote& b) { return rank(a) < rank(b); });
+  }
+
+  std::optional<NamedRole> roleOf(std::size_t joint, const std::string& prefix, std::size_t convention) const {
+    std::optional<NamedRole> role;
+    const std::string& name = names_[joint].text;
+    if (!name.starts_with(prefix)) return role;
+    lookUp(std::string_view(name).substr(prefix.size()), [&](const std::vector<TableEntry>& entries) {
+      for (const TableEntry& entry : entries) {
+        if (!role && entry.convention == convention) role = entry.role;
+      }
+    });
+    return role;
+  }
+
+  const Skeleton& skeleton_;
+  std::vector<PlainName> names_;  // #J
+};
+
+// Order of a limb's segments from the body to its end; none for what is no segment.
+std::optional<int> orderInLimb(JointRole role) {
+  switch (role) {
+    case JointRole::kCollar:
+    case JointRole::kLegBase:
+      return 0;
+    case JointRole::kUpperArm:
+    case JointRole::kUpperLeg:
+      return 1;
+    case JointRole::kLowerArm:
+    case JointRole::kLowerLeg:
+      return 2;
+    case JointRole::kHock:
+      return 3;
+    case JointRole::kHand:
+    case JointRole::kFoot:
+      return 4;
+    case JointRole::kToes:
+      return 5;
+    default:
+      return std::nullopt;
+  }
+}
+
+constexpr int kLowerSegment = 3;  // orderInLimb; hands and feet may be roots of their own, as for inverse kinematics
+
+bool isOfArm(JointRole role) {
+  return role >= JointRole::kCollar && role <= JointRole::kHand;
+}
+
+bool isFinger(JointRole role) {
+  return role >= JointRole::kPalm && role <= JointRole::kLittle;
+}
+
+// Takes away the roles that the tree contradicts.
+class TreeCheck {
+ public:
+  TreeCheck(const Skeleton& skeleton, ConventionMatch& match) : tree_(skeleton), match_(match) {}
+
+  // False where the tree is not the convention's.
+  bool agrees() {
+    decideSpineToHead();
+    dropForelegsWithoutFeet();
+    std::size_t named = 0;
+    std::vector<Index> wrong;
+    for (Index j = 0; j < tree_.size(); ++j) {
+      if (!match_.roles[j]) continue;
+      ++named;
+      if (!isAttachedRight(j)) wrong.push_back(j);
+    }
+    for (const Index j : wrong) match_.roles[j].reset();
+    match_.contradicted = wrong;
+    return static_cast<double>(wrong.size()) <= kMaxContradicted * static_cast<double>(named);
+  }
+
+ private:
+  // Of a numbered spine the joints above where the arms begin are the neck's, and the last one is the head, where no
+  // other joint is.
+  void decideSpineToHead() {
+    std::optional<Index> arms;
+    bool hasHead = false;
+    std::vector<Index> spine;
+    for (const Index j : tree_.order()) {
+      if (!match_.roles[j]) continue;
+      const JointRole role = match_.roles[j]->role;
+      if (role == JointRole::kHead) hasHead = true;
+      if (role == JointRole::kSpineToHead) spine.push_back(j);
+      if (role != JointRole::kCollar && role != JointRole::kUpperArm) continue;
+      arms = arms ? tree_.meeting(*arms, j) : std::optional(j);
+      if (!arms) return;
+    }
+    for (std::size_t i = 0; i < spine.size(); ++i) {
+      JointRole& role = match_.roles[spine[i]]->role;
+      const bool isAboveArms = arms && tree_.isAboveOrSelf(spine[i], *arms);
+      const bool isLast = i + 1 == spine.size();
+      role = i == 0                        ? JointRole::kHips
+             : !arms || isAboveArms        ? JointRole::kTrunk
+             : isLast && !hasHead          ? JointRole::kHead
+                                           : JointRole::kNeck;
+    }
+  }
+
+  // What is called a foreleg and has no foot may be an arm.
+  void dropForelegsWithoutFeet() {
+    const auto has = [&](JointRole role, int pair) {
+      return std::any_of(match_.roles.begin(), match_.roles.end(), [&](const std::optional<NamedRole>& each) {
+        return each && each->role == role && each->pair == pair;
+      });
+    };
+    if (!has(JointRole::kUpperLeg, 1) || has(JointRole::kFoot, 0)) return;
+    for (std::optional<NamedRole>& role : match_.roles) {
+      if (role && role->pair == 0 && orderInLimb(role->role) && !isOfArm(role->role)) role.reset();
+    }
+  }
+
+  bool isAttachedRight(Index joint) const {
+    const NamedRole& own = *match_.roles[joint];
+    const std::optional<int> order = orderInLimb(own.role);
+    bool isJoined = false;
+    const bool isCenter = own.role == JointRole::kHips || own.role == JointRole::kTrunk ||
+                          own.role == JointRole::kNeck || own.role == JointRole::kHead;
+    for (std::optional<Index> up = tree_.parent(joint); up; up = tree_.parent(*up)) {
+      if (!match_.roles[*up]) continue;
+      const NamedRole& above = *match_.roles[*up];
+      const std::optional<int> orderAbove = orderInLimb(above.role);
+      if (isCenter && (orderAbove || isFinger(above.role))) return false;
+      if (isCenter && rankInCenter(above.role) > rankInCenter(own.role)) return false;
+      if (isFinger(own.role) && orderAbove && !(isOfArm(above.role) && above.side == own.side)) return false;
+      if (!order) continue;
+      if (isFinger(above.role)) return false;
+      if (!orderAbove) continue;
+      const bool sameLimb =
+          above.side == own.side && isOfArm(above.role) == isOfArm(own.role) && above.pair == own.pair;
+      if (!sameLimb || *orderAbove > *order) return false;
+      isJoined = isJoined || *orderAbove < *order;
+    }
+    return isJoined || !order || *order > kLowerSegment || !isBelowAnother(own, *order);
+  }
+
+  // Whether the skeleton has a segment of the same limb that comes before it.
+  bool isBelowAnother(const NamedRole& own, int order) const {
+    return std::any_of(match_.roles.begin(), match_.roles.end(), [&](const std::optional<NamedRole>& other) {
+      const std::optional<int> before = other ? orderInLimb(other->role) : std::nullopt;
+      return before && *before < order && *before > 0 && other->side == own.side && other->pair == own.pair &&
+             isOfArm(other->role) == isOfArm(own.role);
+    });
+  }
+
+  // From the hips to the head; what carries hips is rated as they are.
+  static int rankInCenter(JointRole role) {
+    return role == JointRole::kNeck ? 1 : role == JointRole::kHead ? 2 : 0;
+  }
+
+  JointTree tree_;
+  ConventionMatch& match_;
+};
+
+// Mean rest position of the joints of these roles; none where there are none.
+std::optional<Vec3> meanOf(const ConventionMatch& match, std::span<const Vec3> rest,
+                           std::initializer_list<JointRole> roles) {
+  Vec3 sum = Vec3::Zero();
+  std::size_t count = 0;
+  for (std::size_t j = 0; j < rest.size(); ++j) {
+    if (!match.roles[j] || std::find(roles.begin(), roles.end(), match.roles[j]->role) == roles.end()) continue;
+    sum += rest[j];
+    ++count;
+  }
+  if (count == 0) return std::nullopt;
+  return sum / static_cast<double>(count);
+}
+
+// Animals that are named as people are: a level trunk, and hands as low as feet. Of people the arms of no rest pose
+// reach that far along the legs.
+bool standsOnHands(const Skeleton& skeleton, const ConventionMatch& match) {
+  constexpr double kLevel = 0.5;     // cosine between trunk and legs, 60 degrees: below it the trunk lies across them
+  constexpr double kAsLow = 0.3;     // fraction of the legs' length by which hands may be higher than feet
+  const std::vector<Vec3> rest = restPositions(skeleton);
+  const auto hips = meanOf(match, rest, {JointRole::kUpperLeg}), feet = meanOf(match, rest, {JointRole::kFoot}),
+             shoulders = meanOf(match, rest, {JointRole::kUpperArm}), hands = meanOf(match, rest, {JointRole::kHand});
+  if (!hips || !feet || !shoulders || !hands) return false;
+  const Vec3 legs = *feet - *hips, trunk = *shoulders - *hips;
+  if (legs.norm() <= 0 || trunk.norm() <= 0) return false;
+  const Vec3 down = legs.normalized();
+  return std::abs(down.dot(trunk)) < kLevel * trunk.norm() && down.dot(*feet - *hands) < kAsLow * legs.norm();
+}
+
+}  // namespace
+
+std::optional<ConventionMatch> findConvention(const Skeleton& skeleton) {
+  if (skeleton.joints.size() < kMinCoreJoints) return std::nullopt;
+  std::optional<ConventionMatch> match = Finder(skeleton).find();
+  if (!match || !TreeCheck(skeleton, *match).agrees() || standsOnHands(skeleton, *match)) return std::nullopt;
+  return match;
+}
+
+std::optional<PartState> stateOf(JointRole role) {
+  switch (role) {
+    case JointRole::kHips:
+    case JointRole::kTrunk:
+    case JointRole::kSpineToHead:
+      return PartState::kTrunk;
+    case JointRole::kNeck:
+      return PartState::kNeck;
+    case JointRole::kHead:
+      return PartState::kHead;
+    case JointRole::kJaw:
+      return PartState::kJaw;
+    case JointRole::kEye:
+      return PartState::kEye;
+    case JointRole::kCollar:
+      return PartState::kArmBase;
+    case JointRole::kUpperArm:
+      return PartState::kArmUpper;
+    case JointRole::kLowerArm:
+      return PartState::kArmMiddle;
+    case JointRole::kHand:
+      return PartState::kArmEnd;
+    case JointRole::kLegBase:
+      return PartState::kLegBase;
+    case JointRole::kUpperLeg:
+      return PartState::kLegUpper;
+    case JointRole::kLowerLeg:
+      return PartState::kLegMiddle;
+    case JointRole::kHock:
+      return PartState::kLegHock;
+    case JointRole::kFoot:
+      return PartState::kLegEnd;
+    case JointRole::kToes:
+      return PartState::kLegToes;
+    case JointRole::kPalm:
+    case JointRole::kThumb:
+    case JointRole::kIndex:
+    case JointRole::kMiddle:
+    case JointRole::kRing:
+    case JointRole::kLittle:
+      return PartState::kFinger;
+    case JointRole::kTail:
+      return PartState::kTail;
+    case JointRole::kHair:
+      return PartState::kHair;
+    case JointRole::kEar:
+      return PartState::kEar;
+    case JointRole::kWing:
+      return PartState::kWing;
+    case JointRole::kAttachment:
+      return PartState::kAttachment;
+    case JointRole::kRoot:
+    case JointRole::kHelper:
+      return PartState::kOther;
+    case JointRole::kTip:
+      break;
+  }
+  return std::nullopt;
+}
+
+std::string conventionName(const NamingConvention& convention, JointRole role, Side side, std::size_t number,
+                           int pair) {
+  for (const RoleNames& row : convention.roles) {
+    if (row.role != role || row.pair != pair) continue;
+    const std::vector<std::string_view> patterns = wordsIn(row.names);
+    const std::string_view pattern = patterns[isNumbered(patterns.front()) ? 0 : std::min(number, patterns.size() - 1)];
+    if (isSided(pattern) != (side != Side::kCenter)) continue;
+    if (!isNumbered(pattern) && number >= patterns.size()) continue;
+    const bool bracketed = pattern.find('[') != std::string_view::npos;
+    const std::size_t shown = bracketed ? number : number + 1;
+    return std::string(convention.prefix) + writtenOut(convention, pattern, side, shown, !bracketed || number > 0);
+  }
+  return "";
+}
+
+}  // namespace limber

@@ -1,0 +1,77 @@
+// Every naming convention with more and fewer joints and with attachments, written as files and read again: the sample
+// walk finds every joint that has a name.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "limber/anatomy/testing/convention_bodies.h"
+#include "limber/asset/bvh_write.h"
+#include "limber/asset/export_fbx.h"
+#include "limber/asset/motion_io.h"
+#include "limber/asset/write.h"
+#include "limber/matching/skeleton_map.h"
+#include "limber/samples/sample_motions.h"
+
+namespace limber::testing {
+
+// A clip in which the first joint moves, so that every format has something to keep.
+Motion movingMotion(const Skeleton& skeleton) {
+  Motion motion;
+  motion.skeleton = skeleton;
+  Clip clip;
+  clip.name = "move";
+  clip.duration = 1;
+  JointTrack track;
+  track.joint = 0;
+  track.translation.times = {0, 1};
+  const Vec3 from = skeleton.joints[0].rest.translation;
+  track.translation.values = {from, from + Vec3(0, 0, 0.5)};
+  clip.tracks.push_back(std::move(track));
+  motion.clips.push_back(std::move(clip));
+  return motion;
+}
+
+// Of the parts that the walk has, every joint with a name follows the same part of it.
+void expectMatched(const MadeBody& body, const Skeleton& read, const std::string& what) {
+  const Skeleton walk = makeSampleMotion("walk").skeleton;
+  const Anatomy walker = readAnatomy(walk);
+  SkeletonMap map;
+  ASSERT_NO_THROW(map = matchSkeletons(walk, read)) << what;
+  std::vector<const JointMatch*> matchOf(read.joints.size(), nullptr);
+  for (const JointMatch& match : map.matches) {
+    for (const Index joint : match.target) matchOf[joint] = &match;
+  }
+  for (Index j = 0; j < body.skeleton.jointCount(); ++j) {
+    const BodyPart& part = body.parts[j];
+    if (part.kind == PartKind::kOther || !walker.find(part.kind, part.side, part.pair)) continue;
+    const std::optional<Index> joint = read.find(body.skeleton.joints[j].name);
+    ASSERT_TRUE(joint) << what << ": " << body.skeleton.joints[j].name;
+    if (part.kind == PartKind::kArm && part.segment == Segment::kBase) continue;  // the walk may have none
+    const JointMatch* match = matchOf[*joint];
+    ASSERT_TRUE(match) << what << ": " << body.skeleton.joints[j].name << " follows nothing";
+    EXPECT_EQ(match->part.kind, part.kind) << what << ": " << body.skeleton.joints[j].name;
+    EXPECT_EQ(match->part.side, part.side) << what << ": " << body.skeleton.joints[j].name;
+    const bool isLimb = part.kind == PartKind::kLeg || part.kind == PartKind::kArm;
+    if (isLimb) EXPECT_EQ(match->part.segment, part.segment) << what << ": " << body.skeleton.joints[j].name;
+  }
+}
+
+class ConventionFiles : public ::testing::TestWithParam<std::size_t> {};
+
+TEST_P(ConventionFiles, AreMatchedWithTheWalk) {
+  const NamingConvention& convention = namingConventions()[GetParam()];
+  if (!isOfPeople(convention)) return;
+  for (const PersonVariant& variant : personVariants()) {
+    const MadeBody body = personOf(convention, variant);
+    const std::string what = std::string(convention.name) + ", " + std::to_string(variant.spines) + " spines";
+    const Motion motion = movingMotion(body.skeleton);
+    const Asset asset = motionAsset(motion);
+    expectMatched(body, readMotion(writeGlb(asset), "body.glb").skeleton, what + ", GLB");
+    expectMatched(body, readMotion(writeFbx(asset), "body.fbx").skeleton, what + ", FBX");
+    expectMatched(body, readMotion(writeBvh(motion), "body.bvh").skeleton, what + ", BVH");
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ConventionFiles, ::testing::Range(std::size_t{0}, namingConventions().size()));
+
+}  // namespace limber::testing
