@@ -22,6 +22,7 @@
 #include "limber/core/names.h"
 #include "limber/core/transform.h"
 #include "limber/export/joint_frames.h"
+#include "limber/export/target_names.h"
 
 namespace limber {
 
@@ -134,12 +135,15 @@ double evenScaleOf(const Affine& frame) {
 class TargetMaker {
  public:
   TargetMaker(Asset& asset, const EngineTarget& target)
-      : asset_(asset), target_(target), skeleton_(readSkeleton(asset)), globals_(restGlobals(skeleton_.skeleton)) {}
+      : asset_(asset),
+        target_(target),
+        skeleton_(readSkeleton(asset)),
+        globals_(restGlobals(skeleton_.skeleton)) {}
 
   void make() {
     const Anatomy anatomy = readAnatomy(skeleton_.skeleton);
     const std::vector<HumanoidJoint> bones = humanoidJoints(skeleton_.skeleton);
-    std::vector<std::string> names = targetNames(skeleton_.skeleton, anatomy, bones, target_.boneNames, target_.style);
+    const TargetNames names = targetNames(skeleton_.skeleton, anatomy, bones, target_.boneNames, target_.style);
     std::vector<Quat> turns;
     if (target_.axes != BoneAxes::kAsTheyAre) turns = boneTurns(skeleton_.skeleton, anatomy, bones, target_.axes);
     const bool wantsRoot = !target_.rootName.empty();
@@ -223,7 +227,7 @@ class TargetMaker {
   bool isRoot(Index node) const { return root_ == node; }
 
   // Joints first; what else is called so gets a number. The tips that bones end in are spelled as joints are.
-  void rename(const std::vector<std::string>& names) {
+  void rename(const TargetNames& names) {
     std::vector<gltf::Node>& nodes = asset_.document.nodes;
     UniqueNames taken;
     std::set<Index> joints(skeleton_.jointNode.begin(), skeleton_.jointNode.end());
@@ -231,14 +235,15 @@ class TargetMaker {
       joints.insert(*root_);
       nodes[*root_].name = taken.add(std::string(target_.rootName));
     }
-    for (Index j = 0; j < names.size(); ++j) {
-      if (!isRoot(skeleton_.jointNode[j])) nodes[skeleton_.jointNode[j]].name = taken.add(names[j]);
+    for (Index j = 0; j < names.joints.size(); ++j) {
+      if (!isRoot(skeleton_.jointNode[j])) nodes[skeleton_.jointNode[j]].name = taken.add(names.joints[j]);
     }
     const SceneGraph graph = readSceneGraph(asset_.document);
     for (Index n = 0; n < nodes.size(); ++n) {
       if (joints.count(n) > 0 || nodes[n].name.empty()) continue;
       const bool isTip = graph.parent[n] && joints.count(*graph.parent[n]) > 0 && !nodes[n].mesh && !nodes[n].camera;
-      nodes[n].name = taken.add(isTip ? respelled(nodes[n].name, target_.style) : nodes[n].name);
+      const bool isRespelled = isTip && !names.isOwn;
+      nodes[n].name = taken.add(isRespelled ? respelled(nodes[n].name, target_.style) : nodes[n].name);
     }
   }
 

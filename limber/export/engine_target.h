@@ -7,7 +7,8 @@
 #include "limber/asset/asset.h"
 #include "limber/asset/export_fbx.h"
 #include "limber/export/bone_axes.h"
-#include "limber/export/target_names.h"
+#include "limber/export/bone_names.h"
+#include "limber/export/name_style.h"
 
 namespace limber {
 
