@@ -45,6 +45,14 @@ constexpr std::array kTargets = {
                  FbxUnit::kMetre},
     EngineTarget{"mixamo", "the names of Mixamo's characters", BoneNames::kMixamo, NameStyle::kMixamo, "",
                  BoneAxes::kAsTheyAre, FbxUnit::kCentimetre},
+    EngineTarget{"metahuman", "Unreal's names, root and axes, the spine up to MetaHuman's spine_05",
+                 BoneNames::kMetaHuman, NameStyle::kSnake, "root", BoneAxes::kUnreal, FbxUnit::kCentimetre},
+    EngineTarget{"rigify", "the names of deform bones of Blender's Rigify, y along bones", BoneNames::kRigify,
+                 NameStyle::kRigify, "", BoneAxes::kAlongY, FbxUnit::kCentimetre},
+    EngineTarget{"actorcore", "the names and root of ActorCore, AccuRig and Character Creator", BoneNames::kActorCore,
+                 NameStyle::kActorCore, "RL_BoneRoot", BoneAxes::kAsTheyAre, FbxUnit::kCentimetre},
+    EngineTarget{"roblox", "the names and root of Roblox's R15 characters", BoneNames::kRoblox, NameStyle::kPascal,
+                 "Root", BoneAxes::kAsTheyAre, FbxUnit::kMetre},
 };
 
 // The rotation by quarters of a turn that is nearest to one.

@@ -140,7 +140,9 @@ TEST(ToTarget, NamesTheTargetsThatThereAre) {
     findTarget("maya");
     FAIL();
   } catch (const Error& error) {
-    EXPECT_EQ(error.remedy(), "there are: gltf, unreal, unity, godot, blender, vrm, mixamo");
+    EXPECT_EQ(error.remedy(),
+              "there are: gltf, unreal, unity, godot, blender, vrm, mixamo, metahuman, rigify, "
+              "actorcore, roblox");
   }
 }
 

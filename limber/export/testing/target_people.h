@@ -83,7 +83,7 @@ inline TargetWords unrealWords(const std::string& target) {
 }
 
 inline std::vector<TargetWords> targetWords() {
-  std::vector<TargetWords> all = {unrealWords("unreal")};
+  std::vector<TargetWords> all = {unrealWords("unreal"), unrealWords("metahuman")};
   all.back().others.emplace_back("thigh_correctiveRoot_%", "thigh_%");
   all.back().others.emplace_back("thigh_twistCor_01_%", "thigh_twist_01_%");
   for (const char* target : {"unity", "godot"}) {
@@ -133,6 +133,26 @@ inline std::vector<TargetWords> targetWords() {
                  "toe.%",
                  countedFingers({"thumb.0#.%", "f_index.0#.%", "f_middle.0#.%", "f_ring.0#.%", "f_pinky.0#.%"}),
                  {}});
+  all.push_back({"rigify",
+                 "L",
+                 "R",
+                 "",
+                 {"DEF-spine", "DEF-spine.001", "DEF-spine.002", "DEF-spine.003", "DEF-spine.004", "DEF-spine.005",
+                  "DEF-spine.006"},
+                 "DEF-shoulder.%",
+                 "DEF-upper_arm.%",
+                 "DEF-forearm.%",
+                 "DEF-hand.%",
+                 "DEF-thigh.%",
+                 "DEF-shin.%",
+                 "DEF-foot.%",
+                 "DEF-toe.%",
+                 countedFingers({"DEF-thumb.0#.%", "DEF-f_index.0#.%", "DEF-f_middle.0#.%", "DEF-f_ring.0#.%",
+                                 "DEF-f_pinky.0#.%"}),
+                 {{"DEF-upper_arm.%.001", "DEF-upper_arm.%"},
+                  {"DEF-forearm.%.001", "DEF-forearm.%"},
+                  {"DEF-thigh.%.001", "DEF-thigh.%"},
+                  {"DEF-shin.%.001", "DEF-shin.%"}}});
   all.push_back({"mixamo",
                  "Left",
                  "Right",
@@ -154,6 +174,41 @@ inline std::vector<TargetWords> targetWords() {
     const std::string stem = "mixamorig:%Hand" + std::string(finger);
     all.back().others.emplace_back(stem + "4", stem + "3");
   }
+  all.push_back({"actorcore",
+                 "L",
+                 "R",
+                 "RL_BoneRoot",
+                 {"CC_Base_Hip", "CC_Base_Waist", "CC_Base_Spine01", "CC_Base_Spine02", "CC_Base_NeckTwist01",
+                  "CC_Base_NeckTwist02", "CC_Base_Head"},
+                 "CC_Base_%_Clavicle",
+                 "CC_Base_%_Upperarm",
+                 "CC_Base_%_Forearm",
+                 "CC_Base_%_Hand",
+                 "CC_Base_%_Thigh",
+                 "CC_Base_%_Calf",
+                 "CC_Base_%_Foot",
+                 "CC_Base_%_ToeBase",
+                 countedFingers(
+                     {"CC_Base_%_Thumb#", "CC_Base_%_Index#", "CC_Base_%_Mid#", "CC_Base_%_Ring#", "CC_Base_%_Pinky#"}),
+                 {{"CC_Base_%_ThighTwist01", "CC_Base_%_Thigh"},
+                  {"CC_Base_%_CalfTwist01", "CC_Base_%_Calf"},
+                  {"CC_Base_%_UpperarmTwist01", "CC_Base_%_Upperarm"},
+                  {"CC_Base_%_ForearmTwist01", "CC_Base_%_Forearm"}}});
+  all.push_back({"roblox",
+                 "Left",
+                 "Right",
+                 "Root",
+                 {"LowerTorso", "UpperTorso", "Head"},
+                 "",
+                 "%UpperArm",
+                 "%LowerArm",
+                 "%Hand",
+                 "%UpperLeg",
+                 "%LowerLeg",
+                 "%Foot",
+                 "",
+                 {},
+                 {}});
   return all;
 }
 
