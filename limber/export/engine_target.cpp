@@ -14,6 +14,7 @@
 #include "limber/anatomy/humanoid_joints.h"
 #include "limber/asset/accessor_sweep.h"
 #include "limber/asset/humanoid_nodes.h"
+#include "limber/asset/motion_io.h"
 #include "limber/asset/node_edit.h"
 #include "limber/asset/rig_io.h"
 #include "limber/asset/root_joint.h"
@@ -123,6 +124,12 @@ std::set<Index> nodesThatKeepAxes(const gltf::Document& document, const SceneGra
   }
   if (!document.extensions.exists()) return nodes;
   const Json& extensions = *document.extensions;
+  // Of a motion for VRMs the gaze begins at an offset from the head.
+  if (member(member(&extensions, kVrmAnimationName), "lookAt") != nullptr) {
+    for (const HumanoidNode& bone : humanoidNodes(document, kVrmAnimationName)) {
+      if (bone.bone == "head") nodes.insert(bone.node);
+    }
+  }
   addNodesOf(member(member(&extensions, "VRMC_springBone"), "colliders"), document, nodes);
   addNodesOf(member(member(member(&extensions, "VRM"), "secondaryAnimation"), "colliderGroups"), document, nodes);
   return nodes;
@@ -145,7 +152,7 @@ class TargetMaker {
   TargetMaker(Asset& asset, const EngineTarget& target)
       : asset_(asset),
         target_(target),
-        skeleton_(readSkeleton(asset)),
+        skeleton_(hasRig(asset) ? readSkeleton(asset) : movingSkeleton(asset)),
         globals_(restGlobals(skeleton_.skeleton)) {}
 
   void make() {
@@ -307,10 +314,24 @@ const EngineTarget& findTarget(std::string_view name) {
 }
 
 void toTarget(Asset& asset, const EngineTarget& target) {
-  if (target.isPlain() || !hasRig(asset)) return;
+  if (target.isPlain()) return;
+  if (!hasRig(asset) && (!isSkeletonAlone(asset) || movingSkeleton(asset).jointNode.empty())) {
+    asset.warnings.add("no-skeleton", "there is no skeleton, so no joint gets the target's name, root or axes");
+    return;
+  }
   const AccessorSweep unused(asset);
   TargetMaker(asset, target).make();
   unused.sweep(asset);
+}
+
+void toTarget(Motion& motion, const EngineTarget& target) {
+  if (target.isPlain()) return;
+  Asset asset = motionAsset(motion);  // takes the motion's warnings along
+  toTarget(asset, target);
+  Motion made = motionOf(asset);
+  motion.skeleton = std::move(made.skeleton);
+  motion.clips = std::move(made.clips);
+  motion.warnings = std::move(made.warnings);
 }
 
 }  // namespace limber
