@@ -41,6 +41,24 @@ TEST_F(CliClips, ABvhGetsARootJointToo) {
   EXPECT_THAT(content("rooted.bvh"), HasSubstr("ROOT Ground"));
 }
 
+TEST_F(CliClips, AMotionIsWrittenForATargetToo) {
+  for (const char* file : {"unreal.glb", "unreal.fbx"}) {
+    const Result done = run({"convert", "walk.bvh", file, "--target", "unreal", "-q"});
+    ASSERT_EQ(done.code, 0) << done.error;
+    const std::string names = info(file).at("joint_names").dump();
+    EXPECT_THAT(names, AllOf(HasSubstr("\"root\""), HasSubstr("\"pelvis\""), HasSubstr("\"thigh_l\""))) << file;
+  }
+  keep("unreal.glb");
+  ASSERT_EQ(run({"convert", "unreal.fbx", "mixamo.bvh", "--target", "mixamo", "-q"}).code, 0);
+  EXPECT_THAT(content("mixamo.bvh"), HasSubstr("mixamorig:LeftUpLeg"));
+  const Result vrma = run({"convert", "walk.bvh", "walk.vrma", "--target", "unreal"});
+  EXPECT_NE(vrma.code, 0);
+  EXPECT_THAT(vrma.error, HasSubstr("--target"));
+  ASSERT_EQ(run({"convert", "walk.bvh", "walk.vrma", "-q"}).code, 0);
+  ASSERT_EQ(run({"convert", "walk.vrma", "back.glb", "--target", "actorcore", "-q"}).code, 0);
+  EXPECT_THAT(info("back.glb").at("joint_names").dump(), HasSubstr("CC_Base_L_Thigh"));
+}
+
 TEST_F(CliClips, RetargetTakesTheSameOptions) {
   ASSERT_EQ(run({"sample", "biped", "-o", "biped.glb", "-q"}).code, 0);
   const Result done = run({"animate", "biped.glb", "walk.bvh", "-o", "walking.glb", "--in-place", "--tolerance", "2"});

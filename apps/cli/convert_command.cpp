@@ -287,6 +287,11 @@ void run(ConvertArguments options) {
     throw Error(ErrorCode::kBadArgument, "a BVH has all frames: --tolerance has nothing to leave out", options.output,
                 "write a .glb, or fewer frames by --fps");
   }
+  if (isVrmaFormat(options.output) && !findTarget(options.target.target).isPlain()) {
+    throw Error(ErrorCode::kBadArgument,
+                "a VRMA says itself which bone of VRM a joint is: --target has nothing to change", options.output,
+                "write a .glb, .fbx or .bvh, or leave --target out");
+  }
   if (!options.trim.empty()) trimSpan(options.trim);
   if (!options.outputUnit.empty()) metresOf(options.outputUnit);
   const MotionOptions reading = motionOptions(options);
@@ -317,6 +322,7 @@ void run(ConvertArguments options) {
   std::vector<ClipEditReport> reports;
   if (isMotionFormat(options.output)) {
     reports = editClips(*motion, options.clipEdits.edits);
+    if (isBvh(options.output)) toTarget(*motion, findTarget(options.target.target));
     progress.finish();
     if (isBvh(options.output)) {
       writeBvhFiles(*motion, options, account);

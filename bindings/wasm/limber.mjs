@@ -20,7 +20,8 @@ import createEngine from './limber_engine.mjs';
  * @typedef {{ handles?: number, maxInfluences?: number, rigger?: string, template?: string | { name: string, bytes: Uint8Array },
  *             skinning?: string, pieces?: 'auto' | 'rigid' | 'soft', existingRig?: 'refuse' | 'replace' | 'keep-skeleton',
  *             up?: Axis, front?: Axis, pins?: { [joint: string]: Vector }, upright?: boolean, chains?: boolean,
- *             target?: 'gltf' | 'unreal' | 'unity' | 'godot' | 'blender' | 'vrm' | 'mixamo' }} RigOptions
+ *             target?: 'gltf' | 'unreal' | 'unity' | 'godot' | 'blender' | 'vrm' | 'mixamo' | 'metahuman' | 'rigify'
+ *                     | 'actorcore' | 'roblox' }} RigOptions
  * @typedef {'nothing-to-undo' | 'nothing-to-redo' | 'joint-dragged' | 'no-model' | 'no-clip' | 'name-missing'
  *             | 'name-taken' | 'only-root' | 'joint-below-itself' | 'last-member' | 'holds-itself'
  *             | 'model-not-mirrored' | 'nothing-mirrored' | 'joint-locked' | 'pin-outside' | 'handle-count'

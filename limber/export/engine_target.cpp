@@ -14,6 +14,7 @@
 #include "limber/anatomy/humanoid_joints.h"
 #include "limber/asset/accessor_sweep.h"
 #include "limber/asset/humanoid_nodes.h"
+#include "limber/asset/motion_io.h"
 #include "limber/asset/node_edit.h"
 #include "limber/asset/rig_io.h"
 #include "limber/asset/root_joint.h"
@@ -22,6 +23,7 @@
 #include "limber/core/names.h"
 #include "limber/core/transform.h"
 #include "limber/export/joint_frames.h"
+#include "limber/export/target_names.h"
 
 namespace limber {
 
@@ -44,6 +46,14 @@ constexpr std::array kTargets = {
                  FbxUnit::kMetre},
     EngineTarget{"mixamo", "the names of Mixamo's characters", BoneNames::kMixamo, NameStyle::kMixamo, "",
                  BoneAxes::kAsTheyAre, FbxUnit::kCentimetre},
+    EngineTarget{"metahuman", "Unreal's names, root and axes, the spine up to MetaHuman's spine_05",
+                 BoneNames::kMetaHuman, NameStyle::kSnake, "root", BoneAxes::kUnreal, FbxUnit::kCentimetre},
+    EngineTarget{"rigify", "the names of deform bones of Blender's Rigify, y along bones", BoneNames::kRigify,
+                 NameStyle::kRigify, "", BoneAxes::kAlongY, FbxUnit::kCentimetre},
+    EngineTarget{"actorcore", "the names and root of ActorCore, AccuRig and Character Creator", BoneNames::kActorCore,
+                 NameStyle::kActorCore, "RL_BoneRoot", BoneAxes::kAsTheyAre, FbxUnit::kCentimetre},
+    EngineTarget{"roblox", "the names and root of Roblox's R15 characters", BoneNames::kRoblox, NameStyle::kPascal,
+                 "Root", BoneAxes::kAsTheyAre, FbxUnit::kMetre},
 };
 
 // The rotation by quarters of a turn that is nearest to one.
@@ -114,6 +124,12 @@ std::set<Index> nodesThatKeepAxes(const gltf::Document& document, const SceneGra
   }
   if (!document.extensions.exists()) return nodes;
   const Json& extensions = *document.extensions;
+  // Of a motion for VRMs the gaze begins at an offset from the head.
+  if (member(member(&extensions, kVrmAnimationName), "lookAt") != nullptr) {
+    for (const HumanoidNode& bone : humanoidNodes(document, kVrmAnimationName)) {
+      if (bone.bone == "head") nodes.insert(bone.node);
+    }
+  }
   addNodesOf(member(member(&extensions, "VRMC_springBone"), "colliders"), document, nodes);
   addNodesOf(member(member(member(&extensions, "VRM"), "secondaryAnimation"), "colliderGroups"), document, nodes);
   return nodes;
@@ -134,12 +150,15 @@ double evenScaleOf(const Affine& frame) {
 class TargetMaker {
  public:
   TargetMaker(Asset& asset, const EngineTarget& target)
-      : asset_(asset), target_(target), skeleton_(readSkeleton(asset)), globals_(restGlobals(skeleton_.skeleton)) {}
+      : asset_(asset),
+        target_(target),
+        skeleton_(hasRig(asset) ? readSkeleton(asset) : movingSkeleton(asset)),
+        globals_(restGlobals(skeleton_.skeleton)) {}
 
   void make() {
     const Anatomy anatomy = readAnatomy(skeleton_.skeleton);
     const std::vector<HumanoidJoint> bones = humanoidJoints(skeleton_.skeleton);
-    std::vector<std::string> names = targetNames(skeleton_.skeleton, anatomy, bones, target_.boneNames, target_.style);
+    const TargetNames names = targetNames(skeleton_.skeleton, anatomy, bones, target_.boneNames, target_.style);
     std::vector<Quat> turns;
     if (target_.axes != BoneAxes::kAsTheyAre) turns = boneTurns(skeleton_.skeleton, anatomy, bones, target_.axes);
     const bool wantsRoot = !target_.rootName.empty();
@@ -223,7 +242,7 @@ class TargetMaker {
   bool isRoot(Index node) const { return root_ == node; }
 
   // Joints first; what else is called so gets a number. The tips that bones end in are spelled as joints are.
-  void rename(const std::vector<std::string>& names) {
+  void rename(const TargetNames& names) {
     std::vector<gltf::Node>& nodes = asset_.document.nodes;
     UniqueNames taken;
     std::set<Index> joints(skeleton_.jointNode.begin(), skeleton_.jointNode.end());
@@ -231,14 +250,15 @@ class TargetMaker {
       joints.insert(*root_);
       nodes[*root_].name = taken.add(std::string(target_.rootName));
     }
-    for (Index j = 0; j < names.size(); ++j) {
-      if (!isRoot(skeleton_.jointNode[j])) nodes[skeleton_.jointNode[j]].name = taken.add(names[j]);
+    for (Index j = 0; j < names.joints.size(); ++j) {
+      if (!isRoot(skeleton_.jointNode[j])) nodes[skeleton_.jointNode[j]].name = taken.add(names.joints[j]);
     }
     const SceneGraph graph = readSceneGraph(asset_.document);
     for (Index n = 0; n < nodes.size(); ++n) {
       if (joints.count(n) > 0 || nodes[n].name.empty()) continue;
       const bool isTip = graph.parent[n] && joints.count(*graph.parent[n]) > 0 && !nodes[n].mesh && !nodes[n].camera;
-      nodes[n].name = taken.add(isTip ? respelled(nodes[n].name, target_.style) : nodes[n].name);
+      const bool isRespelled = isTip && !names.isOwn;
+      nodes[n].name = taken.add(isRespelled ? respelled(nodes[n].name, target_.style) : nodes[n].name);
     }
   }
 
@@ -294,10 +314,24 @@ const EngineTarget& findTarget(std::string_view name) {
 }
 
 void toTarget(Asset& asset, const EngineTarget& target) {
-  if (target.isPlain() || !hasRig(asset)) return;
+  if (target.isPlain()) return;
+  if (!hasRig(asset) && (!isSkeletonAlone(asset) || movingSkeleton(asset).jointNode.empty())) {
+    asset.warnings.add("no-skeleton", "there is no skeleton, so no joint gets the target's name, root or axes");
+    return;
+  }
   const AccessorSweep unused(asset);
   TargetMaker(asset, target).make();
   unused.sweep(asset);
+}
+
+void toTarget(Motion& motion, const EngineTarget& target) {
+  if (target.isPlain()) return;
+  Asset asset = motionAsset(motion);  // takes the motion's warnings along
+  toTarget(asset, target);
+  Motion made = motionOf(asset);
+  motion.skeleton = std::move(made.skeleton);
+  motion.clips = std::move(made.clips);
+  motion.warnings = std::move(made.warnings);
 }
 
 }  // namespace limber

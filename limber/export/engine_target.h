@@ -7,7 +7,9 @@
 #include "limber/asset/asset.h"
 #include "limber/asset/export_fbx.h"
 #include "limber/export/bone_axes.h"
-#include "limber/export/target_names.h"
+#include "limber/export/bone_names.h"
+#include "limber/export/name_style.h"
+#include "limber/skeleton/motion.h"
 
 namespace limber {
 
@@ -36,7 +38,12 @@ const EngineTarget& findTarget(std::string_view name);
 //
 // Joints keep their axes where something else depends on them: a mesh, a camera or an extension of the node,
 // colliders, a view's offset. Joints whose scale is uneven are turned by quarters. The warning "kept-axes" counts both.
-// An asset without a rig, and every asset for the target "gltf", stays as it is. Throws as readAnatomy does.
+// A skeleton alone, which a motion has (isSkeletonAlone, movingSkeleton), is a model without a surface. Every asset for
+// the target "gltf" stays as it is; so does one that has neither a rig nor such a skeleton, with the warning
+// "no-skeleton". Throws as readAnatomy does.
 void toTarget(Asset& asset, const EngineTarget& target);
+
+// The same for a motion: joints are where they were in every frame. Keys are single precision afterwards.
+void toTarget(Motion& motion, const EngineTarget& target);
 
 }  // namespace limber

@@ -17,6 +17,7 @@
 #include "limber/asset/write.h"
 #include "limber/export/bone_axes.h"
 #include "limber/export/testing/gltf_player.h"
+#include "limber/export/testing/target_people.h"
 
 namespace limber {
 namespace {
@@ -111,6 +112,103 @@ TEST(ToTarget, LeavesAModelForGltfAndOneWithoutARigToTheByte) {
   const Bytes bareBefore = writeGlb(bare);
   toTarget(bare, findTarget("unreal"));
   EXPECT_EQ(writeGlb(bare), bareBefore);
+  ASSERT_EQ(bare.warnings.items().size(), 1u);
+  EXPECT_EQ(bare.warnings.items()[0].kind, "no-skeleton");
+}
+
+// As it comes out of a file: joints in the order of the tree.
+Motion readBack(const Asset& asset) {
+  return motionOf(readAsset(writeGlb(asset), "walk.glb"));
+}
+
+// A person who goes ahead and moves all joints, without a surface.
+Motion walk() {
+  Motion motion;
+  motion.name = "walk";
+  motion.skeleton = testing::TargetPerson(testing::wordsOf("mixamo")).skeleton;
+  constexpr int kFrames = 12;
+  Clip& clip = motion.clips.emplace_back();
+  clip.name = "walk";
+  std::vector<float> times;
+  for (int k = 0; k < kFrames; ++k) times.push_back(static_cast<float>(k) / 30);
+  const Index hips = *motion.skeleton.find("mixamorig:Hips");
+  auto& path = clip.translations.emplace_back();
+  path.joint = hips;
+  path.times = times;
+  for (int k = 0; k < kFrames; ++k) {
+    path.values.push_back(
+        (motion.skeleton.joints[hips].rest.translation + Vec3(0.01 * k, 0.02 * std::sin(k), 0.05 * k)).cast<float>());
+  }
+  for (Index j = 0; j < motion.skeleton.jointCount(); ++j) {
+    auto& track = clip.rotations.emplace_back();
+    track.joint = j;
+    track.times = times;
+    for (int k = 0; k < kFrames; ++k) {
+      const Vec3 axis = Vec3(1, 0.3 * j, 2).normalized();
+      track.values.push_back(Quat(Eigen::AngleAxisd(0.4 * std::sin(0.5 * k + j), axis)).cast<float>());
+    }
+  }
+  return readBack(motionAsset(motion));
+}
+
+std::vector<Affine> worldAt(const Motion& motion, double seconds) {
+  Pose pose = restPose(motion.skeleton);
+  sampleClip(motion.clips[0], seconds, pose);
+  return poseGlobals(motion.skeleton, pose);
+}
+
+// The largest distance between joints of two motions at the frames of their clip, in metres; joints of `before` are the
+// last of `after`.
+double largestJointMove(const Motion& before, const Motion& after) {
+  const Index added = after.skeleton.jointCount() - before.skeleton.jointCount();
+  double moved = 0;
+  for (const float time : before.clips[0].rotations[0].times) {
+    const std::vector<Affine> a = worldAt(before, time), b = worldAt(after, time);
+    for (Index j = 0; j < before.skeleton.jointCount(); ++j) {
+      moved = std::max(moved, (a[j].translation() - b[j + added].translation()).norm());
+    }
+  }
+  return moved;
+}
+
+TEST(ToTarget, MotionsWithoutASurfaceGetNamesRootAndAxes) {
+  const Motion before = walk();
+  for (const EngineTarget& target : engineTargets()) {
+    Asset asset = motionAsset(before);
+    toTarget(asset, target);
+    checkAsset(asset);
+    const Motion after = readBack(asset);
+    EXPECT_EQ(after.skeleton.jointCount(), before.skeleton.jointCount() + (target.rootName.empty() ? 0 : 1));
+    EXPECT_LT(largestJointMove(before, after), 1e-5) << target.name;
+    if (!target.rootName.empty()) {
+      EXPECT_EQ(after.skeleton.joints[0].name, target.rootName);
+    }
+    EXPECT_EQ(after.skeleton.find("thigh_l").has_value(), target.rootName == "root") << target.name;
+    Motion alone = before;
+    toTarget(alone, target);
+    EXPECT_LT(largestJointMove(before, alone), 1e-5) << target.name;
+    EXPECT_EQ(alone.skeleton.joints.back().name, after.skeleton.joints.back().name);
+    EXPECT_EQ(alone.name, "walk");
+  }
+}
+
+TEST(ToTarget, NodesThatMoveWithoutASkinAreAMotion) {
+  Asset asset = motionAsset(walk());
+  asset.document.skins.clear();
+  const Motion before = motionOf(asset);
+  toTarget(asset, findTarget("unreal"));
+  const Motion after = readBack(asset);
+  EXPECT_TRUE(after.skeleton.find("upperarm_r"));
+  EXPECT_LT(largestJointMove(before, after), 1e-5);
+}
+
+TEST(ToTarget, AMotionInFbxHasTheTargetsNames) {
+  const Motion before = walk();
+  Asset asset = motionAsset(before);
+  toTarget(asset, findTarget("unreal"));
+  const Motion after = motionOf(readAsset(encodeFbx(asset, {}).bytes, "walk.fbx"));
+  EXPECT_TRUE(after.skeleton.find("upperarm_r"));
+  EXPECT_LT(largestJointMove(before, after), 1e-4);
 }
 
 TEST(ToTarget, SaysWhyASkeletonGetsNoRoot) {
@@ -140,7 +238,9 @@ TEST(ToTarget, NamesTheTargetsThatThereAre) {
     findTarget("maya");
     FAIL();
   } catch (const Error& error) {
-    EXPECT_EQ(error.remedy(), "there are: gltf, unreal, unity, godot, blender, vrm, mixamo");
+    EXPECT_EQ(error.remedy(),
+              "there are: gltf, unreal, unity, godot, blender, vrm, mixamo, metahuman, rigify, "
+              "actorcore, roblox");
   }
 }
 

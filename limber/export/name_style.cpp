@@ -6,7 +6,7 @@ namespace limber {
 
 namespace {
 
-constexpr std::string_view kMixamoPrefix = "mixamorig:";
+constexpr std::string_view kMixamoPrefix = "mixamorig:", kRigifyPrefix = "DEF-", kActorCorePrefix = "CC_Base_";
 
 bool isDigit(char c) {
   return std::isdigit(static_cast<unsigned char>(c)) != 0;
@@ -19,7 +19,16 @@ std::string capitalized(std::string_view word) {
 }
 
 bool hasSeparators(NameStyle style) {
-  return style == NameStyle::kSnake || style == NameStyle::kDotted;
+  return style == NameStyle::kSnake || style == NameStyle::kDotted || style == NameStyle::kRigify;
+}
+
+// Before the word that comes next.
+std::string_view separatorBefore(const std::string& word, const std::string& stem, NameStyle style) {
+  if (stem.empty()) return "";
+  const bool isNumber = isDigit(word.front());
+  if (hasSeparators(style)) return isNumber && style != NameStyle::kSnake ? "." : "_";
+  const bool isEnd = style == NameStyle::kMixamo && word == "end";  // mixamorig:HeadTop_End
+  return isEnd || (isNumber && isDigit(stem.back())) ? "_" : "";
 }
 
 }  // namespace
@@ -28,34 +37,52 @@ std::string spellStem(std::span<const std::string> words, NameStyle style) {
   std::string stem;
   for (const std::string& word : words) {
     if (word.empty()) continue;
-    const bool number = isDigit(word.front());
-    if (hasSeparators(style)) {
-      if (!stem.empty()) stem += number && style == NameStyle::kDotted ? '.' : '_';
-      stem += word;
-    } else {
-      if (number && !stem.empty() && isDigit(stem.back())) stem += '_';
-      stem += capitalized(word);
-    }
+    stem += separatorBefore(word, stem, style);
+    stem += hasSeparators(style) ? word : capitalized(word);
   }
   return stem;
 }
 
+std::string_view sideWord(Side side, NameStyle style) {
+  if (side == Side::kCenter) return "";
+  const bool isLeft = side == Side::kLeft;
+  switch (style) {
+    case NameStyle::kSnake:
+      return isLeft ? "l" : "r";
+    case NameStyle::kDotted:
+    case NameStyle::kRigify:
+    case NameStyle::kActorCore:
+      return isLeft ? "L" : "R";
+    case NameStyle::kCamel:
+      return isLeft ? "left" : "right";
+    case NameStyle::kPascal:
+    case NameStyle::kMixamo:
+      break;
+  }
+  return isLeft ? "Left" : "Right";
+}
+
 std::string spellName(std::string_view stem, Side side, NameStyle style) {
-  const bool isSided = side != Side::kCenter, isLeft = side == Side::kLeft;
+  const bool isSided = side != Side::kCenter;
+  const std::string word(sideWord(side, style));
   std::string name(stem);
   switch (style) {
     case NameStyle::kSnake:
-      return isSided ? name + (isLeft ? "_l" : "_r") : name;
+      return isSided ? name + "_" + word : name;
     case NameStyle::kDotted:
-      return isSided ? name + (isLeft ? ".L" : ".R") : name;
+      return isSided ? name + "." + word : name;
+    case NameStyle::kRigify:
+      return std::string(kRigifyPrefix) + spellName(stem, side, NameStyle::kDotted);
     case NameStyle::kPascal:
-      return isSided ? (isLeft ? "Left" : "Right") + name : name;
+      return word + name;
     case NameStyle::kMixamo:
-      return std::string(kMixamoPrefix) + spellName(stem, side, NameStyle::kPascal);
+      return std::string(kMixamoPrefix) + word + name;
+    case NameStyle::kActorCore:
+      return std::string(kActorCorePrefix) + (isSided ? word + "_" : "") + name;
     case NameStyle::kCamel:
       break;
   }
-  if (isSided) return (isLeft ? "left" : "right") + name;
+  if (isSided) return word + name;
   if (!name.empty()) name[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(name[0])));
   return name;
 }

@@ -1,13 +1,11 @@
-// Sources of the table: Unreal Engine 5's mannequin (SK_Mannequin: pelvis, spine_01 to spine_05, neck_01 and neck_02,
-// index_metacarpal_l), as scripts for it list its bones; Unity's enumeration HumanBodyBones; Godot's
-// SkeletonProfileHumanoid (scene/resources/skeleton_profile.cpp, 56 bones); limbs of Blender's rigify metarig (thigh.L,
-// shin.L, f_index.01.L), but its torso in words, as spine.003 is a chest in one rig and a neck in another; Mixamo's
-// characters (mixamorig:LeftHandIndex1). VRM's names are those of humanoidBones().
 #include "limber/export/target_names.h"
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -20,95 +18,76 @@ namespace limber {
 
 namespace {
 
-struct BoneRow {
-  std::string_view vrm;  // without the side
-  std::string_view unreal, unity, godot, blender, mixamo;
-};
+// A skeleton has a program's names where so many bones, and this fraction of all that are read, are called as there. A
+// person has 15 bones at least (VRM 1.0), and most of these are to agree. A third, as a reading may go wrong in both
+// hands, which have 30 of 54 bones, while of a body whose sides are exchanged no more than the trunk agrees, 6 of 22.
+constexpr std::size_t kFewestOwnBones = 8;
+constexpr double kOwnFraction = 1.0 / 3;
 
-constexpr std::array kBoneRows = {
-    BoneRow{"Hips", "pelvis", "Hips", "Hips", "hips", "Hips"},
-    BoneRow{"Spine", "spine_01", "Spine", "Spine", "spine", "Spine"},
-    BoneRow{"Chest", "spine_02", "Chest", "Chest", "chest", "Spine1"},
-    BoneRow{"UpperChest", "spine_03", "UpperChest", "UpperChest", "upper_chest", "Spine2"},
-    BoneRow{"Neck", "neck_01", "Neck", "Neck", "neck", "Neck"},
-    BoneRow{"Head", "head", "Head", "Head", "head", "Head"},
-    BoneRow{"Eye", "eye", "Eye", "Eye", "eye", "Eye"},
-    BoneRow{"Jaw", "jaw", "Jaw", "Jaw", "jaw", "Jaw"},
-    BoneRow{"UpperLeg", "thigh", "UpperLeg", "UpperLeg", "thigh", "UpLeg"},
-    BoneRow{"LowerLeg", "calf", "LowerLeg", "LowerLeg", "shin", "Leg"},
-    BoneRow{"Foot", "foot", "Foot", "Foot", "foot", "Foot"},
-    BoneRow{"Toes", "ball", "Toes", "Toes", "toe", "ToeBase"},
-    BoneRow{"Shoulder", "clavicle", "Shoulder", "Shoulder", "shoulder", "Shoulder"},
-    BoneRow{"UpperArm", "upperarm", "UpperArm", "UpperArm", "upper_arm", "Arm"},
-    BoneRow{"LowerArm", "lowerarm", "LowerArm", "LowerArm", "forearm", "ForeArm"},
-    BoneRow{"Hand", "hand", "Hand", "Hand", "hand", "Hand"},
-    BoneRow{"ThumbMetacarpal", "thumb_01", "ThumbProximal", "ThumbMetacarpal", "thumb.01", "HandThumb1"},
-    BoneRow{"ThumbProximal", "thumb_02", "ThumbIntermediate", "ThumbProximal", "thumb.02", "HandThumb2"},
-    BoneRow{"ThumbDistal", "thumb_03", "ThumbDistal", "ThumbDistal", "thumb.03", "HandThumb3"},
-    BoneRow{"IndexProximal", "index_01", "IndexProximal", "IndexProximal", "f_index.01", "HandIndex1"},
-    BoneRow{"IndexIntermediate", "index_02", "IndexIntermediate", "IndexIntermediate", "f_index.02", "HandIndex2"},
-    BoneRow{"IndexDistal", "index_03", "IndexDistal", "IndexDistal", "f_index.03", "HandIndex3"},
-    BoneRow{"MiddleProximal", "middle_01", "MiddleProximal", "MiddleProximal", "f_middle.01", "HandMiddle1"},
-    BoneRow{"MiddleIntermediate", "middle_02", "MiddleIntermediate", "MiddleIntermediate", "f_middle.02",
-            "HandMiddle2"},
-    BoneRow{"MiddleDistal", "middle_03", "MiddleDistal", "MiddleDistal", "f_middle.03", "HandMiddle3"},
-    BoneRow{"RingProximal", "ring_01", "RingProximal", "RingProximal", "f_ring.01", "HandRing1"},
-    BoneRow{"RingIntermediate", "ring_02", "RingIntermediate", "RingIntermediate", "f_ring.02", "HandRing2"},
-    BoneRow{"RingDistal", "ring_03", "RingDistal", "RingDistal", "f_ring.03", "HandRing3"},
-    BoneRow{"LittleProximal", "pinky_01", "LittleProximal", "LittleProximal", "f_pinky.01", "HandPinky1"},
-    BoneRow{"LittleIntermediate", "pinky_02", "LittleIntermediate", "LittleIntermediate", "f_pinky.02", "HandPinky2"},
-    BoneRow{"LittleDistal", "pinky_03", "LittleDistal", "LittleDistal", "f_pinky.03", "HandPinky3"},
-};
-
-std::string_view stemIn(const BoneRow& row, BoneNames column) {
-  switch (column) {
-    case BoneNames::kUnreal:
-      return row.unreal;
-    case BoneNames::kUnity:
-      return row.unity;
-    case BoneNames::kGodot:
-      return row.godot;
-    case BoneNames::kBlender:
-      return row.blender;
-    case BoneNames::kMixamo:
-      return row.mixamo;
-    case BoneNames::kVrm:
-      break;
+// Bones that are named together: a limb, a finger, an eye, the trunk with neck and head.
+std::string chainOf(std::string_view bone) {
+  static constexpr std::array<std::string_view, 5> kFingers = {"Thumb", "Index", "Middle", "Ring", "Little"};
+  static constexpr std::array<std::string_view, 4> kLeg = {"UpperLeg", "LowerLeg", "Foot", "Toes"};
+  static constexpr std::array<std::string_view, 2> kAlone = {"Eye", "jaw"};
+  std::string side;
+  for (const Side each : kSides) {
+    if (bone.starts_with(nameOf(each))) side = nameOf(each);
   }
-  return row.vrm;
+  for (const std::string_view finger : kFingers) {
+    if (bone.substr(side.size()).starts_with(finger)) return side + std::string(finger);
+  }
+  const auto endsIn = [&](std::string_view end) { return bone.ends_with(end); };
+  if (std::any_of(kAlone.begin(), kAlone.end(), endsIn)) return std::string(bone);
+  if (side.empty()) return "trunk";
+  return side + (std::any_of(kLeg.begin(), kLeg.end(), endsIn) ? "Leg" : "Arm");
 }
 
-// "leftUpperArm" -> left, UpperArm; "hips" -> none, Hips.
-std::pair<Side, std::string> takeSide(std::string_view bone) {
-  for (const Side side : kSides) {
-    if (bone.starts_with(nameOf(side))) return {side, std::string(bone.substr(nameOf(side).size()))};
-  }
-  const std::string word(bone);
-  return {Side::kCenter, spellStem(std::span(&word, 1), NameStyle::kPascal)};
+// partsOfName takes "center" for a word that says nothing of the body; in center_of_mass it is the name.
+NameParts partsWithCenter(const std::string& name) {
+  constexpr std::string_view kCenter = "center";
+  NameParts parts = partsOfName(name);
+  std::string small(name);
+  std::transform(small.begin(), small.end(), small.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::size_t at = small.find(kCenter);
+  const auto isLetterAt = [&](std::size_t i) {
+    return i < small.size() && std::isalpha(static_cast<unsigned char>(small[i])) != 0;
+  };
+  const bool isWord = at != std::string::npos && !isLetterAt(at + kCenter.size()) && (at == 0 || !isLetterAt(at - 1));
+  if (!isWord || std::find(parts.words.begin(), parts.words.end(), kCenter) != parts.words.end()) return parts;
+  const std::size_t before = at == 0 ? 0 : partsOfName(name.substr(0, at)).words.size();
+  const auto place = static_cast<std::ptrdiff_t>(std::min(before, parts.words.size()));
+  parts.words.insert(parts.words.begin() + place, std::string(kCenter));
+  return parts;
 }
 
 class TargetNamer {
  public:
   TargetNamer(const Skeleton& skeleton, const Anatomy& anatomy, std::span<const HumanoidJoint> bones, BoneNames column,
               NameStyle style)
-      : skeleton_(skeleton), anatomy_(anatomy), column_(column), style_(style), wanted_(skeleton.joints.size()) {
+      : skeleton_(skeleton),
+        anatomy_(anatomy),
+        column_(column),
+        style_(style),
+        own_(ownNames(column, style)),
+        wanted_(skeleton.joints.size()) {
     for (const HumanoidJoint& bone : bones) jointOf_[bone.bone] = bone.joint;
   }
 
-  std::vector<std::string> names() {
+  // Names are given in this order, and the first of two that are alike keeps it.
+  TargetNames names() {
     nameBones();
-    if (column_ == BoneNames::kUnreal || column_ == BoneNames::kMixamo) nameSpine();
+    nameTrunk();
+    const bool isOwn = hasOwnNames();
+    if (isOwn) keepNamesOfBones();
+    giveNames();
+    for (Index j = 0; isOwn && j < skeleton_.jointCount(); ++j) want(j, nameOfJoint(j));
     nameMetacarpals();
     for (const Part& part : anatomy_.parts) namePart(part);
-    // What is known of the body keeps its name, whatever others are called.
-    UniqueNames names;
-    for (std::string& name : wanted_) {
-      if (!name.empty()) name = names.add(name);
-    }
-    for (Index j = 0; j < skeleton_.jointCount(); ++j) {
-      if (wanted_[j].empty()) wanted_[j] = names.add(respelled(skeleton_.joints[j].name, style_));
-    }
-    return std::move(wanted_);
+    giveNames();
+    for (Index j = 0; j < skeleton_.jointCount(); ++j) want(j, isOwnName(j) ? nameOfJoint(j) : respelledName(j));
+    giveNames();
+    return {std::move(given_), isOwn};
   }
 
  private:
@@ -125,13 +104,53 @@ class TargetNamer {
     return found == jointOf_.end() ? std::nullopt : std::optional(found->second);
   }
 
+  const std::string& nameOfJoint(Index joint) const { return skeleton_.joints[joint].name; }
+  std::string respelledName(Index joint) const { return respelled(nameOfJoint(joint), style_); }
+  bool isOwnName(Index joint) const { return own_.count(nameOfJoint(joint)) > 0; }
+
+  // Names that are wanted by now are the joints', in their order.
+  void giveNames() {
+    given_.resize(wanted_.size());
+    for (Index j = 0; j < skeleton_.jointCount(); ++j) {
+      if (given_[j].empty() && !wanted_[j].empty()) given_[j] = unique_.add(wanted_[j]);
+    }
+  }
+
   void nameBones() {
     for (const auto& [bone, joint] : jointOf_) {
-      const auto [side, stem] = takeSide(bone);
-      const auto row = std::find_if(kBoneRows.begin(), kBoneRows.end(),
-                                    [&, &word = stem](const BoneRow& each) { return each.vrm == word; });
-      if (row != kBoneRows.end()) want(joint, spellName(stemIn(*row, column_), side, style_));
+      if (const std::optional<std::string> name = boneName(bone, column_, style_)) want(joint, *name);
     }
+  }
+
+  bool hasOwnNames() const {
+    const auto isCalledSo = [&](const auto& bone) { return nameOfJoint(bone.second) == wanted_[bone.second]; };
+    const auto same = static_cast<std::size_t>(std::count_if(jointOf_.begin(), jointOf_.end(), isCalledSo));
+    return same >= kFewestOwnBones && static_cast<double>(same) >= kOwnFraction * static_cast<double>(jointOf_.size());
+  }
+
+  // A chain that has another program's names, too, is named as it is read: Godot's LeftThumbProximal is another joint
+  // than Unity's, whose LeftThumbIntermediate is none of Godot's.
+  void keepNamesOfBones() {
+    const std::set<std::string> foreign = foreignChains();
+    for (const auto& [bone, joint] : jointOf_) {
+      if (foreign.count(chainOf(bone)) == 0) wanted_[joint] = nameOfJoint(joint);
+    }
+    for (const Index joint : trunk_) {
+      if (foreign.count(chainOf("hips")) == 0) wanted_[joint] = nameOfJoint(joint);
+    }
+  }
+
+  std::set<std::string> foreignChains() const {
+    std::set<std::string> all, unread, chains;
+    for (const Joint& joint : skeleton_.joints) all.insert(joint.name);
+    unread = all;
+    for (const auto& [bone, joint] : jointOf_) unread.erase(nameOfJoint(joint));
+    for (const auto& [bone, joint] : jointOf_) {
+      // Where a joint that no bone was read in has the bone's name, it is the reading that went wrong.
+      if (!isOwnName(joint) && unread.count(wanted_[joint]) == 0) chains.insert(chainOf(bone));
+    }
+    if (!isCountedAsOwn(all, column_, style_)) chains.insert(chainOf("hips"));
+    return chains;
   }
 
   // The joints strictly between two, from the upper one down; none where the lower one does not hang on it.
@@ -145,22 +164,20 @@ class TargetNamer {
     return joints;
   }
 
-  // Counted, however many there are.
-  void nameSpine() {
-    const std::optional<Index> neck = jointOf("neck"), head = jointOf("head");
-    const std::vector<Index> spine = between(jointOf("hips"), neck ? neck : head);
-    const bool unreal = column_ == BoneNames::kUnreal;
-    for (std::size_t i = 0; i < spine.size(); ++i) {
-      const std::string stem = unreal   ? fmt::format("spine_{:02}", i + 1)
-                               : i == 0 ? std::string("Spine")
-                                        : fmt::format("Spine{}", i);
-      wanted_[spine[i]] = spellName(stem, Side::kCenter, style_);
-    }
-    const std::vector<Index> necks = between(neck, head);
-    for (std::size_t i = 0; i < necks.size(); ++i) {
-      const std::string stem = unreal ? fmt::format("neck_{:02}", i + 2) : fmt::format("Neck{}", i + 1);
-      wanted_[necks[i]] = spellName(stem, Side::kCenter, style_);
-    }
+  // Counted where the program counts, however many there are.
+  void nameTrunk() {
+    const std::optional<Index> hips = jointOf("hips"), neck = jointOf("neck"), head = jointOf("head");
+    const std::vector<Index> spine = between(hips, neck ? neck : head);
+    if (spine.empty()) return;
+    std::vector<Index> necks = between(neck, head);
+    if (neck) necks.insert(necks.begin(), *neck);
+    const std::vector<std::string> names = trunkNames(spine.size(), necks.size(), column_, style_);
+    if (names.empty()) return;
+    trunk_.push_back(*hips);
+    trunk_.insert(trunk_.end(), spine.begin(), spine.end());
+    trunk_.insert(trunk_.end(), necks.begin(), necks.end());
+    if (head) trunk_.push_back(*head);
+    for (std::size_t i = 0; i < trunk_.size(); ++i) wanted_[trunk_[i]] = names[i];
   }
 
   void nameMetacarpals() {
@@ -170,9 +187,8 @@ class TargetNamer {
         const std::vector<Index> palm = between(jointOf(sideName + "Hand"), jointOf(sideName + finger + "Proximal"));
         if (palm.empty()) continue;
         std::string word(finger);
-        word[0] = static_cast<char>(word[0] - 'A' + 'a');
-        if (column_ == BoneNames::kUnreal && word == "little") word = "pinky";
-        want(palm.back(), spell({word, "metacarpal"}, side));
+        word[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(word[0])));
+        want(palm.back(), metacarpalName(word, side, column_, style_));
       }
     }
   }
@@ -219,8 +235,12 @@ class TargetNamer {
   const Anatomy& anatomy_;
   BoneNames column_;
   NameStyle style_;
+  std::set<std::string> own_;                  // of the program's skeletons
   std::map<std::string_view, Index> jointOf_;  // by the bone of VRM
+  std::vector<Index> trunk_;                   // from the hips to the head, where the program counts
   std::vector<std::string> wanted_;            // #J, empty: not named yet
+  UniqueNames unique_;
+  std::vector<std::string> given_;  // #J, unique
 };
 
 }  // namespace
@@ -228,12 +248,12 @@ class TargetNamer {
 std::string respelled(const std::string& name, NameStyle style) {
   const auto isForeign = [](char c) { return static_cast<unsigned char>(c) > 0x7e; };
   if (std::any_of(name.begin(), name.end(), isForeign)) return name;
-  const NameParts parts = partsOfName(name);
+  const NameParts parts = partsWithCenter(name);
   return parts.words.empty() ? name : spellName(spellStem(parts.words, style), parts.side, style);
 }
 
-std::vector<std::string> targetNames(const Skeleton& skeleton, const Anatomy& anatomy,
-                                     std::span<const HumanoidJoint> bones, BoneNames column, NameStyle style) {
+TargetNames targetNames(const Skeleton& skeleton, const Anatomy& anatomy, std::span<const HumanoidJoint> bones,
+                        BoneNames column, NameStyle style) {
   return TargetNamer(skeleton, anatomy, bones, column, style).names();
 }
 

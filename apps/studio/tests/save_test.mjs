@@ -119,8 +119,8 @@ const cases = {
   },
   async 'each program has names of its own'() {
     const plain = jointNames((await saved('glb')).path), all = [];
-    for (const target of ['unity', 'blender', 'mixamo']) all.push(jointNames((await saved('glb', { target })).path).join());
-    assert.equal(new Set([plain.join(), ...all]).size, 4);
+    for (const target of ['unity', 'blender', 'mixamo', 'rigify', 'actorcore', 'roblox']) all.push(jointNames((await saved('glb', { target })).path).join());
+    assert.equal(new Set([plain.join(), ...all]).size, 7);
   },
   async 'a VRM says what is to be filled in'() {
     const { bytes, lost } = await saved('vrm');

@@ -19,7 +19,10 @@ const formats: Record<ModelFormat, { name: string; told: Words; holdsOneClip?: t
   gltf: { name: 'glTF', told: 'text, with its buffers, in a ZIP archive' },
 };
 const plain = 'gltf'; // the target that changes nothing
-const programs: Record<string, string> = { unreal: 'Unreal Engine', unity: 'Unity', godot: 'Godot', blender: 'Blender', vrm: 'VRM', mixamo: 'Mixamo' };
+const programs: Record<string, string> = {
+  unreal: 'Unreal Engine', unity: 'Unity', godot: 'Godot', blender: 'Blender', vrm: 'VRM', mixamo: 'Mixamo', metahuman: 'MetaHuman',
+  rigify: 'Blender Rigify', actorcore: 'ActorCore, Character Creator', roblox: 'Roblox',
+};
 
 /** What is offered, and of what kind: an archive of one file is that file. */
 function fileOf(format: ModelFormat, bytes: Uint8Array, stem: string): { bytes: Uint8Array; type: string; name: string } {

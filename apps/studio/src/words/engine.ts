@@ -114,6 +114,7 @@ const warnings: Named = {
   'vrm-meta': 'authors and permissions are to be filled in', 'lost-textures': 'pictures of metalness, roughness and occlusion are left out',
   'colored-textures': 'a colour that a picture is multiplied by is lost in most programs', 'renamed-nodes': 'nodes of a name that was taken have a number behind it',
   'kept-axes': 'joints keep axes that meshes, extensions or uneven scales depend on', 'material-extensions': 'what some extensions say of materials is left out',
+  'no-skeleton': 'there is no skeleton, so no joint gets the target\u2019s name, root or axes',
   'no-root-joint': 'the skeleton gets no root joint: nodes that its roots hang below move',
   'extrapolated-curves': 'curves that go on beyond their keys (cycles, slopes) stand still there',
   'removed-clips': 'clips that were removed are left out of the sequence',

@@ -692,6 +692,7 @@ export const german = {
   'pictures of metalness, roughness and occlusion are left out': 'Bilder für Metall, Rauheit und Verdeckung fallen weg',
   'a colour that a picture is multiplied by is lost in most programs': 'eine Farbe, mit der ein Bild multipliziert wird, geht in den meisten Programmen verloren',
   'nodes of a name that was taken have a number behind it': 'Knoten, deren Name vergeben war, haben eine Nummer dahinter',
+  'there is no skeleton, so no joint gets the target\u2019s name, root or axes': 'es gibt kein Skelett, also bekommt kein Gelenk Name, Wurzel oder Achsen des Ziels',
   'joints keep axes that meshes, extensions or uneven scales depend on': 'Gelenke behalten Achsen, von denen Oberflächen, Erweiterungen oder ungleiche Maßstäbe abhängen',
   'what some extensions say of materials is left out': 'was manche Erweiterungen über Materialien sagen, fällt weg',
   'the skeleton gets no root joint: nodes that its roots hang below move': 'das Skelett bekommt kein Wurzelgelenk: Knoten, unter denen seine Wurzeln hängen, bewegen sich',
