@@ -519,9 +519,8 @@ int main(int argc, char** argv) {
     // The largest first, each to the fold that has the fewest groups.
     std::vector<std::string> names;
     for (const auto& [name, of] : makers) names.push_back(name);
-    std::stable_sort(names.begin(), names.end(), [&](const std::string& a, const std::string& b) {
-      return makers[a].size() > makers[b].size();
-    });
+    std::stable_sort(names.begin(), names.end(),
+                     [&](const std::string& a, const std::string& b) { return makers[a].size() > makers[b].size(); });
     std::vector<std::vector<std::string>> folds(static_cast<std::size_t>(settings.makerFolds));
     std::vector<std::size_t> sizes(folds.size(), 0);
     for (const std::string& name : names) {

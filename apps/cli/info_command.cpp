@@ -211,8 +211,7 @@ void printConventions() {
 
 void run(const InfoArguments& options) {
   if (options.conventions) return printConventions();
-  if (options.input.empty())
-    throw Error(ErrorCode::kBadArgument, "info needs a file to tell about, or --conventions");
+  if (options.input.empty()) throw Error(ErrorCode::kBadArgument, "info needs a file to tell about, or --conventions");
   const Asset asset = readAsset(options.input);
   const AssetInfo info = inspectAsset(asset);
   if (options.json) {

@@ -14,9 +14,9 @@ namespace limber {
 
 namespace {
 
-constexpr std::array<std::string_view, kPartKinds> kKindNames = {"trunk", "neck", "head", "tail",   "leg",
-                                                                 "arm",   "wing", "fin",  "finger", "ear",
-                                                                 "jaw",   "eye",  "hair", "prop",   "attachment", "other"};
+constexpr std::array<std::string_view, kPartKinds> kKindNames = {"trunk", "neck", "head",       "tail", "leg", "arm",
+                                                                 "wing",  "fin",  "finger",     "ear",  "jaw", "eye",
+                                                                 "hair",  "prop", "attachment", "other"};
 
 // Under each guess of the axes, and the field of the likeliest.
 struct Guesses {

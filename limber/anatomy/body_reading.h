@@ -11,7 +11,8 @@ namespace limber {
 
 // The skeleton and what it is made of must outlive this; it stays where it was made.
 struct BodyReading {
-  // conventions: whether names that are a convention's (naming_convention.h) are certain; else they are words as others.
+  // conventions: whether names that are a convention's (naming_convention.h) are certain; else they are words as
+  // others.
   BodyReading(const Skeleton& read, const Pose& pose, bool names, bool conventions = true);
   BodyReading(const BodyReading&) = delete;
   BodyReading& operator=(const BodyReading&) = delete;

@@ -80,8 +80,7 @@ class Declared {
     // What a limb has beyond its declared joints, where none of its side is declared to be that.
     const PartState state = *stateAt(*above);
     const PartKind kind = kindOf(state);
-    if (kind == PartKind::kLeg || kind == PartKind::kArm)
-      mask |= limbStatesAfter(state) & ~ofSide_[sideIndex(*above)];
+    if (kind == PartKind::kLeg || kind == PartKind::kArm) mask |= limbStatesAfter(state) & ~ofSide_[sideIndex(*above)];
     const bool hasDigits = kind == PartKind::kFinger || state == PartState::kLegEnd || state == PartState::kLegToes ||
                            (state == PartState::kArmEnd && !has(PartState::kFinger));
     if (!hasDigits) mask &= ~bit(PartState::kFinger);
@@ -113,7 +112,7 @@ class Declared {
 
   const std::vector<std::optional<NamedRole>>& roles_;
   const JointTree& tree_;
-  std::vector<bool> contradicted_;                // #J
+  std::vector<bool> contradicted_;                 // #J
   std::vector<bool> carriesCenter_, carriesLimb_;  // #J, whether such a declared joint is below
   std::vector<std::uint32_t> base_;                // #J, states of a limb's base that a joint above it may have
   std::uint32_t declared_ = 0;                     // states of all declared joints

@@ -65,32 +65,43 @@ constexpr ExtraWords kExtraWords[] = {
     {kFin, "fin fins flipper pectoral dorsal"},
     {kEar, "ear ears mimi ohr oreille oreja uho"},
     {kMouth, "mouth snout beak lip lips bill teeth chin jawbone"},
-    {kHair, "hair hairs mane ponytail pony twintail pigtail braid bang bangs fringe sidelock sideburn ahoge wig beard mustache "
-            "kami maegami haar haare zopf cheveux pelo cabello coleta trenza volosy kosa"},
+    {kHair,
+     "hair hairs mane ponytail pony twintail pigtail braid bang bangs fringe sidelock sideburn ahoge wig beard "
+     "mustache "
+     "kami maegami haar haare zopf cheveux pelo cabello coleta trenza volosy kosa"},
     {kDigit, "finger fingers digit"},
-    {kProp, "prop weapon gun sword shield item bag backpack knife axe bow slot mug staff holster sheath scabbard quiver lantern "
-            "wand spear hammer schwert arme espada mech"},
+    {kProp,
+     "prop weapon gun sword shield item bag backpack knife axe bow slot mug staff holster sheath scabbard quiver "
+     "lantern "
+     "wand spear hammer schwert arme espada mech"},
     {kRoot, "root armature master main global cog reference"},
     {kFeather, "feather feathers"},
     {kHorn, "horn horns antenna antler spike tsuno corne cuerno"},
-    {kCloth, "skirt cape cloth robe cloak mantle mantel scarf muffler coat jacket dress hem apron frill lace tunic tabard loincloth "
-             "sash obi sleeve cuff hood tie necktie ribbon strap belt buckle string cord rope tassel pendant necklace earring pouch "
-             "hat helmet veil glasses pauldron armor tasset himo suso sode manto fuku jupe kleid umhang kapuze schal falda vestido "
-             "capa capucha yubka plash remen qun"},
+    {kCloth,
+     "skirt cape cloth robe cloak mantle mantel scarf muffler coat jacket dress hem apron frill lace tunic tabard "
+     "loincloth "
+     "sash obi sleeve cuff hood tie necktie ribbon strap belt buckle string cord rope tassel pendant necklace earring "
+     "pouch "
+     "hat helmet veil glasses pauldron armor tasset himo suso sode manto fuku jupe kleid umhang kapuze schal falda "
+     "vestido "
+     "capa capucha yubka plash remen qun"},
     {kBlade, "scapula blade"},
     {kHoof, "hoof paw"},
     {kClaw, "claw"},
     {kBody, "body"},
     {kEyelid, "eyelid eyebrow"},
-    {kBreast, "breast breasts boob boobs bust tit mune oppai butt buttock buttocks glute siri shiri ribs busen sein seno"},
+    {kBreast,
+     "breast breasts boob boobs bust tit mune oppai butt buttock buttocks glute siri shiri ribs busen sein seno"},
     {kTongue, "tongue"},
     {kMetapodial, "hock metatarsal metatarsals carpal metacarpal"},
 };
 
 // Words of scripts that do not separate them: any name that contains one.
 constexpr ExtraWords kContained[] = {
-    {kCloth, "スカート 裙 치마 スカーフ マント 披风 斗篷 披風 망토 コート ドレス 服 衣 裾 袖 帯 帶 ベルト 벨트 リボン 리본 蝴蝶 ネクタイ 领带 マフラー 围巾 "
-             "フード フリル 飘带 紐 ひも 帽 帽子 юбка плащ"},
+    {kCloth,
+     "スカート 裙 치마 スカーフ マント 披风 斗篷 披風 망토 コート ドレス 服 衣 裾 袖 帯 帶 ベルト 벨트 リボン 리본 "
+     "蝴蝶 ネクタイ 领带 マフラー 围巾 "
+     "フード フリル 飘带 紐 ひも 帽 帽子 юбка плащ"},
     {kHair, "髪 髮 头发 前发 刘海 马尾 辫 アホ毛 あほ毛 もみあげ ツインテ おさげ 三つ編み 머리카락 헤어 волос"},
     {kBreast, "胸 乳 おっぱい 가슴 尻 臀"},
     {kTail, "しっぽ 尻尾 尾 꼬리 хвост"},

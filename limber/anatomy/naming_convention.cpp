@@ -182,8 +182,7 @@ std::vector<PlainName> plainNames(const Skeleton& skeleton) {
     return end > 1 && end < name.size() && name[end - 1] == '_' ? end - 1 : name.size();
   };
   for (const Joint& joint : skeleton.joints) numbered += numberAt(joint.name) < joint.name.size() ? 1 : 0;
-  const bool isNumbered =
-      static_cast<double>(numbered) > kMinNumbered * static_cast<double>(skeleton.joints.size());
+  const bool isNumbered = static_cast<double>(numbered) > kMinNumbered * static_cast<double>(skeleton.joints.size());
   std::vector<PlainName> names;
   names.reserve(skeleton.joints.size());
   for (const Joint& joint : skeleton.joints) {
@@ -326,7 +325,8 @@ class Finder {
       });
     }
     const auto rank = [](const Vote& vote) { return std::pair(isWhole(vote.core), vote.named); };
-    return *std::max_element(votes.begin(), votes.end(), [&](const Vote& a, const Vote& b) { return rank(a) < rank(b); });
+    return *std::max_element(votes.begin(), votes.end(),
+                             [&](const Vote& a, const Vote& b) { return rank(a) < rank(b); });
   }
 
   std::optional<NamedRole> roleOf(std::size_t joint, const std::string& prefix, std::size_t convention) const {
@@ -420,10 +420,10 @@ class TreeCheck {
       JointRole& role = match_.roles[spine[i]]->role;
       const bool isAboveArms = arms && tree_.isAboveOrSelf(spine[i], *arms);
       const bool isLast = i + 1 == spine.size();
-      role = i == 0                        ? JointRole::kHips
-             : !arms || isAboveArms        ? JointRole::kTrunk
-             : isLast && !hasHead          ? JointRole::kHead
-                                           : JointRole::kNeck;
+      role = i == 0                 ? JointRole::kHips
+             : !arms || isAboveArms ? JointRole::kTrunk
+             : isLast && !hasHead   ? JointRole::kHead
+                                    : JointRole::kNeck;
     }
   }
 
@@ -468,15 +468,13 @@ class TreeCheck {
   bool isBelowAnother(const NamedRole& own, int order) const {
     return std::any_of(match_.roles.begin(), match_.roles.end(), [&](const std::optional<NamedRole>& other) {
       const std::optional<int> before = other ? orderInLimb(other->role) : std::nullopt;
-      return before && *before < order && *before > 0 && other->side == own.side && other->pair == own.pair &&
+      return before && *before<order&& * before> 0 && other->side == own.side && other->pair == own.pair &&
              isOfArm(other->role) == isOfArm(own.role);
     });
   }
 
   // From the hips to the head; what carries hips is rated as they are.
-  static int rankInCenter(JointRole role) {
-    return role == JointRole::kNeck ? 1 : role == JointRole::kHead ? 2 : 0;
-  }
+  static int rankInCenter(JointRole role) { return role == JointRole::kNeck ? 1 : role == JointRole::kHead ? 2 : 0; }
 
   JointTree tree_;
   ConventionMatch& match_;
@@ -499,8 +497,8 @@ std::optional<Vec3> meanOf(const ConventionMatch& match, std::span<const Vec3> r
 // Animals that are named as people are: a level trunk, and hands as low as feet. Of people the arms of no rest pose
 // reach that far along the legs.
 bool standsOnHands(const Skeleton& skeleton, const ConventionMatch& match) {
-  constexpr double kLevel = 0.5;     // cosine between trunk and legs, 60 degrees: below it the trunk lies across them
-  constexpr double kAsLow = 0.3;     // fraction of the legs' length by which hands may be higher than feet
+  constexpr double kLevel = 0.5;  // cosine between trunk and legs, 60 degrees: below it the trunk lies across them
+  constexpr double kAsLow = 0.3;  // fraction of the legs' length by which hands may be higher than feet
   const std::vector<Vec3> rest = restPositions(skeleton);
   const auto hips = meanOf(match, rest, {JointRole::kUpperLeg}), feet = meanOf(match, rest, {JointRole::kFoot}),
              shoulders = meanOf(match, rest, {JointRole::kUpperArm}), hands = meanOf(match, rest, {JointRole::kHand});

@@ -15,9 +15,9 @@ namespace limber {
 
 // What a convention calls a joint.
 enum class JointRole : unsigned char {
-  kRoot,         // above the body: no part of it
-  kHelper,       // IK targets, poles, markers of a place: no part of the body
-  kAttachment,   // clothes, breasts, correctives, and what else is attached to the body
+  kRoot,        // above the body: no part of it
+  kHelper,      // IK targets, poles, markers of a place: no part of the body
+  kAttachment,  // clothes, breasts, correctives, and what else is attached to the body
   kHips,
   kTrunk,
   kSpineToHead,  // a numbered spine that goes on into neck and head: its last joint is the head
@@ -25,18 +25,18 @@ enum class JointRole : unsigned char {
   kHead,
   kJaw,
   kEye,
-  kTip,          // where the bone of its parent ends
+  kTip,  // where the bone of its parent ends
   kCollar,
-  kUpperArm,     // with twist joints of it, as have the next ones
+  kUpperArm,  // with twist joints of it, as have the next ones
   kLowerArm,
   kHand,
-  kLegBase,      // between the hips and the upper leg
+  kLegBase,  // between the hips and the upper leg
   kUpperLeg,
   kLowerLeg,
   kHock,
   kFoot,
   kToes,
-  kPalm,         // a metacarpal whose finger its name does not say
+  kPalm,  // a metacarpal whose finger its name does not say
   kThumb,
   kIndex,
   kMiddle,
@@ -62,9 +62,9 @@ struct RoleNames {
 
 // How the lower body and the arms are attached.
 enum class TorsoTree : unsigned char {
-  kHipsCarryAll,      // legs and spine are children of the hips, arms of the chest
-  kLowerBodyBeside,   // legs are children of the hips, which lie beside the spine on a joint of their own
-  kArmsOnNeck         // as the first, but the arms are children of the neck
+  kHipsCarryAll,     // legs and spine are children of the hips, arms of the chest
+  kLowerBodyBeside,  // legs are children of the hips, which lie beside the spine on a joint of their own
+  kArmsOnNeck        // as the first, but the arms are children of the neck
 };
 
 struct NamingConvention {
@@ -90,7 +90,7 @@ struct NamedRole {
 struct ConventionMatch {
   const NamingConvention* convention = nullptr;
   std::vector<std::optional<NamedRole>> roles;  // #J; none: the convention does not name it
-  std::vector<std::optional<Index>> partners;  // #J, the joint of the other side with the same name
+  std::vector<std::optional<Index>> partners;   // #J, the joint of the other side with the same name
   // Joints that the names say to be something that the tree contradicts, as a shin above its thigh: what their names
   // say is evidence, no more, and they have no role.
   std::vector<Index> contradicted;

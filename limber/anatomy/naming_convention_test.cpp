@@ -42,8 +42,8 @@ TEST(NamingConvention, EveryVariantOfEveryOneIsReadRight) {
       for (Index j = 0; j < body.skeleton.jointCount(); ++j) {
         if (body.parts[j].kind == PartKind::kOther) continue;
         EXPECT_TRUE(isRight(body.parts[j], readPart(anatomy, j)))
-            << convention.name << ", " << variant.spines << " spines: " << body.skeleton.joints[j].name << " is read as "
-            << labelOf(anatomy, j);
+            << convention.name << ", " << variant.spines << " spines: " << body.skeleton.joints[j].name
+            << " is read as " << labelOf(anatomy, j);
       }
     }
   }
@@ -89,11 +89,11 @@ TEST(NamingConvention, AnyPrefixAndNumbersOfExportersArePassedOver) {
   };
   const auto bare = [](const std::string& name) { return name.substr(name.find(':') + 1); };
   for (const Skeleton& skeleton :
-       {renamed([&](const std::string& name, Index) { return bare(name); }),
-        renamed([&](const std::string& name, Index) { return "mixamorig7:" + bare(name); }),
-        renamed([&](const std::string& name, Index) { return "mixamorig" + bare(name); }),
-        renamed([&](const std::string& name, Index) { return "Hero_" + bare(name); }),
-        renamed([&](const std::string& name, Index j) { return name + "_0" + std::to_string(j + 3); })}) {
+       {renamed([&](const std::string&name, Index) { return bare(name); }),
+        renamed([&](const std::string&name, Index) { return "mixamorig7:" + bare(name); }),
+        renamed([&](const std::string&name, Index) { return "mixamorig" + bare(name); }),
+        renamed([&](const std::string&name, Index) { return "Hero_" + bare(name); }),
+        renamed([&](const std::string&name, Index j) { return name + "_0" + std::to_string(j + 3); })}) {
     const std::optional<ConventionMatch> match = findConvention(skeleton);
     ASSERT_TRUE(match) << skeleton.joints[3].name;
     EXPECT_EQ(match->convention->name, "Mixamo") << skeleton.joints[3].name;

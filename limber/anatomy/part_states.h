@@ -41,7 +41,7 @@ constexpr PartKind kindOf(PartState state) {
       PartKind::kOther, PartKind::kTrunk, PartKind::kNeck, PartKind::kHead, PartKind::kTail, PartKind::kLeg,
       PartKind::kLeg,   PartKind::kLeg,   PartKind::kLeg,  PartKind::kLeg,  PartKind::kLeg,  PartKind::kArm,
       PartKind::kArm,   PartKind::kArm,   PartKind::kArm,  PartKind::kWing, PartKind::kFin,  PartKind::kFinger,
-      PartKind::kEar,   PartKind::kJaw,   PartKind::kEye,  PartKind::kHair, PartKind::kProp,   PartKind::kAttachment};
+      PartKind::kEar,   PartKind::kJaw,   PartKind::kEye,  PartKind::kHair, PartKind::kProp, PartKind::kAttachment};
   return kKinds[static_cast<std::size_t>(state)];
 }
 

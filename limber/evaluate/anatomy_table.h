@@ -34,8 +34,8 @@ std::vector<LabelledSkeleton> labelledSkeletons(std::string_view labels, const s
                                                 Warnings& skipped);
 
 // A page in Markdown: parts right with names and without, whole and damaged in each way, of files below creatures/check
-// and wild/judge and of all others; and a table of how often what was said to be sure was right. Skeletons whose joints all hang on
-// the root stand apart. The same bytes for the same files.
+// and wild/judge and of all others; and a table of how often what was said to be sure was right. Skeletons whose joints
+// all hang on the root stand apart. The same bytes for the same files.
 std::string anatomyPage(const std::vector<LabelledSkeleton>& bodies, Progress& progress);
 
 }  // namespace limber

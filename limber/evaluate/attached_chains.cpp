@@ -29,7 +29,8 @@ class Attacher {
 
   void attach() {
     const std::optional<Index> hips = carrierOf(PartState::kLegUpper, PartState::kLegBase),
-                               chest = carrierOf(PartState::kArmUpper, PartState::kArmBase), head = first(PartState::kHead);
+                               chest = carrierOf(PartState::kArmUpper, PartState::kArmBase),
+                               head = first(PartState::kHead);
     if (size_ <= 0 || !first(PartState::kTrunk)) return;
     if (hips && chance(0.35)) skirt(*hips);
     if (head && chance(0.35)) hair(*head);
@@ -69,7 +70,8 @@ class Attacher {
     const bool isSided = side != Side::kCenter;
     switch (style_) {
       case 0:
-        return fmt::format("J_Sec_{}{}{}_{:02}", isSided ? (side == Side::kLeft ? "L_" : "R_") : "", word, chain, link + 1);
+        return fmt::format("J_Sec_{}{}{}_{:02}", isSided ? (side == Side::kLeft ? "L_" : "R_") : "", word, chain,
+                           link + 1);
       case 1:
         return fmt::format("{}_{}_{}{}", word, chain, link, isSided ? (side == Side::kLeft ? "_l" : "_r") : "");
       case 2:
@@ -111,10 +113,12 @@ class Attacher {
   }
 
   void skirt(Index hips) {
-    constexpr std::array<std::string_view, 8> kWords = {"Skirt", "skirt", "Coat", "cloth", "dress", "Hem", "robe", "Tasset"};
+    constexpr std::array<std::string_view, 8> kWords = {"Skirt", "skirt", "Coat", "cloth",
+                                                        "dress", "Hem",   "robe", "Tasset"};
     const std::string_view word = oneOf(kWords);
     Index carrier = hips;
-    if (chance(0.3)) carrier = add(nameFor(word, Side::kCenter, 9, 0), hips, at(hips), {PartState::kAttachment, Side::kCenter, 0});
+    if (chance(0.3))
+      carrier = add(nameFor(word, Side::kCenter, 9, 0), hips, at(hips), {PartState::kAttachment, Side::kCenter, 0});
     const int pairs = between(1, 6), links = between(1, 5);
     const double radius = size_ * random_.uniform(0.04, 0.1), step = size_ * random_.uniform(0.03, 0.1),
                  outward = random_.uniform(0, 0.6);
@@ -124,9 +128,11 @@ class Attacher {
       const Vec3 direction = std::cos(angle) * front_ + std::sin(angle) * left_, start = about + radius * direction;
       const Vec3 down = step * (outward * direction - up_).normalized();
       chain(word, PartState::kAttachment, Side::kLeft, p, links, carrier, start, down);
-      chain(word, PartState::kAttachment, Side::kRight, p, links, carrier, mirrored(start, about), mirrored(down, Vec3::Zero()));
+      chain(word, PartState::kAttachment, Side::kRight, p, links, carrier, mirrored(start, about),
+            mirrored(down, Vec3::Zero()));
     }
-    if (chance(0.4)) chain(word, PartState::kAttachment, Side::kCenter, 8, links, carrier, about - radius * front_, -step * up_);
+    if (chance(0.4))
+      chain(word, PartState::kAttachment, Side::kCenter, 8, links, carrier, about - radius * front_, -step * up_);
   }
 
   void hair(Index head) {
@@ -143,7 +149,8 @@ class Attacher {
       chain(word, PartState::kHair, Side::kRight, p, links, head, mirrored(start, about), mirrored(down, Vec3::Zero()));
     }
     if (pairs == 0 || chance(0.4))
-      chain(word, PartState::kHair, Side::kCenter, 8, links, head, about - radius * front_, -step * (up_ + 0.3 * front_).normalized());
+      chain(word, PartState::kHair, Side::kCenter, 8, links, head, about - radius * front_,
+            -step * (up_ + 0.3 * front_).normalized());
   }
 
   void cape(Index chest) {

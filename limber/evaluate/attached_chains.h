@@ -7,8 +7,8 @@
 namespace limber {
 
 // Adds some of these, as artists do: a ring of skirt or coat chains at the hips, hair on the head, a cape on the chest,
-// breasts, buttocks, straps, sleeves, targets of inverse kinematics at the root, leaf joints. Names are words of the thing,
-// or of nothing. Hair is labelled as hair, all else as attachments. A body without a trunk stays as it is.
+// breasts, buttocks, straps, sleeves, targets of inverse kinematics at the root, leaf joints. Names are words of the
+// thing, or of nothing. Hair is labelled as hair, all else as attachments. A body without a trunk stays as it is.
 void addAttachments(LabelledSkeleton& body, Random& random);
 
 }  // namespace limber

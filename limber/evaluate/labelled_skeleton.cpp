@@ -307,8 +307,8 @@ LabelledSkeleton labelled(const BodyLabels& labels, Skeleton skeleton) {
 
 std::string_view nameOf(Damage damage) {
   constexpr std::array<std::string_view, kDamages> kNames = {
-      "numbered", "mirrored", "turned", "rescaled", "stretched", "posed", "cropped", "joints added", "joints removed",
-      "attachments added"};
+      "numbered", "mirrored", "turned",       "rescaled",       "stretched",
+      "posed",    "cropped",  "joints added", "joints removed", "attachments added"};
   return kNames[static_cast<std::size_t>(damage)];
 }
 

@@ -78,9 +78,12 @@ class ConventionPerson {
   void arm(Side side) {
     const double x = side == Side::kLeft ? 1 : -1;
     const auto part = [&](Segment segment) { return body_part::arm(side, segment); };
-    const std::string collar = add(nameOf(JointRole::kCollar, side), armsOn_, {0.03 * x, 1.41, 0}, part(Segment::kBase)),
-                      upper = add(nameOf(JointRole::kUpperArm, side), collar, {0.17 * x, 1.42, 0}, part(Segment::kUpper)),
-                      lower = add(nameOf(JointRole::kLowerArm, side), upper, {0.45 * x, 1.42, -0.01}, part(Segment::kMiddle)),
+    const std::string collar =
+                          add(nameOf(JointRole::kCollar, side), armsOn_, {0.03 * x, 1.41, 0}, part(Segment::kBase)),
+                      upper =
+                          add(nameOf(JointRole::kUpperArm, side), collar, {0.17 * x, 1.42, 0}, part(Segment::kUpper)),
+                      lower = add(nameOf(JointRole::kLowerArm, side), upper, {0.45 * x, 1.42, -0.01},
+                                  part(Segment::kMiddle)),
                       hand = add(nameOf(JointRole::kHand, side), lower, {0.70 * x, 1.42, 0}, part(Segment::kEnd));
     if (variant_.twists) {
       body_.add(upper + "_twist", upper, {0.3 * x, 1.42, 0}, center(PartKind::kOther));
@@ -107,7 +110,8 @@ class ConventionPerson {
     const auto part = [&](Segment segment) { return body_part::leg(side, segment); };
     const std::string base = add(nameOf(JointRole::kLegBase, side), hips_, {0.07 * x, 0.93, 0}, part(Segment::kBase)),
                       upper = add(nameOf(JointRole::kUpperLeg, side), base, {0.1 * x, 0.9, 0}, part(Segment::kUpper)),
-                      lower = add(nameOf(JointRole::kLowerLeg, side), upper, {0.1 * x, 0.5, 0.01}, part(Segment::kMiddle)),
+                      lower =
+                          add(nameOf(JointRole::kLowerLeg, side), upper, {0.1 * x, 0.5, 0.01}, part(Segment::kMiddle)),
                       foot = add(nameOf(JointRole::kFoot, side), lower, {0.1 * x, 0.09, -0.02}, part(Segment::kEnd));
     if (variant_.twists) body_.add(upper + "_twist", upper, {0.1 * x, 0.7, 0}, center(PartKind::kOther));
     feet_.push_back(foot);
@@ -142,7 +146,9 @@ class ConventionPerson {
     }
   }
 
-  Vec3 positionOf(const std::string& name) const { return restPositions(body_.skeleton)[body_.skeleton.find(name).value()]; }
+  Vec3 positionOf(const std::string& name) const {
+    return restPositions(body_.skeleton)[body_.skeleton.find(name).value()];
+  }
 
   const NamingConvention& convention_;
   PersonVariant variant_;
@@ -155,8 +161,8 @@ inline MadeBody personOf(const NamingConvention& convention, const PersonVariant
   return ConventionPerson(convention, variant).make();
 }
 
-// Every variant differs from the others in several ways at once; together they have each number of necks and spines, and
-// everything beside.
+// Every variant differs from the others in several ways at once; together they have each number of necks and spines,
+// and everything beside.
 inline std::vector<PersonVariant> personVariants() {
   std::vector<PersonVariant> variants(9);
   variants[1] = {1, 0, false, false, false, false, true, false, false, false, false};
