@@ -21,8 +21,8 @@ std::shared_ptr<const NpzFiles> readBody(const std::string& path) {
 }  // namespace
 
 void MotionArguments::addTo(CLI::App& command) {
-  command.add_option("--up", up, "which axis of a BVH or .npz points up; auto tells it from heads and feet")
-      ->check(CLI::IsMember({"auto", "y", "z"}))
+  command.add_option("--up", up, "which axis of a BVH or .npz points up; auto infers y or z from heads and feet")
+      ->check(CLI::IsMember({"auto", "y", "z", "-y", "-z"}))
       ->type_name("AXIS")
       ->capture_default_str();
   command
@@ -33,7 +33,7 @@ void MotionArguments::addTo(CLI::App& command) {
 
 MotionOptions MotionArguments::options() const {
   MotionOptions options;
-  if (up != "auto") options.bvh.up = options.smpl.up = up == "z" ? UpAxis::kZ : UpAxis::kY;
+  options.bvh.up = options.smpl.up = upAxisNamed(up);
   if (!body.empty()) options.smpl.body = readBody(body);
   return options;
 }

@@ -25,7 +25,7 @@ constexpr std::string_view kKeepSkeleton = "the program must keep the skeleton t
 Motion readWhole(const ProgramOutput& output, const Adapter& adapter) {
   BvhOptions options;
   options.metresPerUnit = adapter.outputMetresPerUnit;
-  options.up = adapter.outputUp == AdapterUp::kZ ? UpAxis::kZ : UpAxis::kY;
+  options.up = options.restUp = adapter.outputUp == AdapterUp::kZ ? UpAxis::kZ : UpAxis::kY;
   Motion motion = readBvh(output.bytes, output.name, options);
   // What is repaired in a file of the user's is an error in one that was made a moment ago.
   constexpr std::array<std::string_view, 6> kDamage = {"bad-numbers", "cut-frame", "frame-count",

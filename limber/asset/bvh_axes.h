@@ -1,40 +1,61 @@
-// Which axis of a BVH points up.
+// Which axis of a BVH points up: in its rest pose, and in its frames, which may differ.
 #pragma once
 
 #include <array>
-#include <cmath>
-#include <string_view>
-#include <vector>
+#include <span>
+#include <string>
 
-#include "limber/asset/bvh_hierarchy.h"
-#include "limber/asset/bvh_line.h"
+#include "limber/asset/bvh_ends.h"
+#include "limber/asset/up_axis.h"
+#include "limber/skeleton/motion.h"
 
 namespace limber {
 
-// Heads lie above feet along Z, clearly.
-inline bool standsAlongZ(const std::vector<BvhJoint>& joints) {
-  const auto names = [](const std::string& name, std::string_view part) {
-    for (std::size_t at = 0; at + part.size() <= name.size(); ++at) {
-      if (isWord(std::string_view(name).substr(at, part.size()), part)) return true;
-    }
-    return false;
-  };
-  std::vector<Vec3> places(joints.size());
-  std::array<Vec3, 2> sums = {Vec3::Zero(), Vec3::Zero()};  // heads, feet
-  std::array<double, 2> counts = {0, 0};
-  for (std::size_t j = 0; j < joints.size(); ++j) {
-    places[j] = joints[j].offset;
-    if (joints[j].parent) places[j] += places[*joints[j].parent];
-    const std::string& name = joints[j].name;
-    const bool foot = names(name, "foot") || names(name, "toe") || names(name, "ankle");
-    if (!foot && !names(name, "head")) continue;
-    sums[foot] += places[j];
-    counts[foot] += 1;
-  }
-  if (counts[0] == 0 || counts[1] == 0) return false;
-  const Vec3 upwards = sums[0] / counts[0] - sums[1] / counts[1];
-  constexpr double kClearly = 4;  // people stand within a few degrees of it; a beast's head lies before its feet, too
-  return upwards.z() > kClearly * std::abs(upwards.y());
-}
+// Heads lie above feet along that axis in the rest pose, clearly.
+bool restsAlong(UpAxis up, std::span<const BvhJoint> joints, const BvhEnds& ends);
+
+// Heads lie above feet along Z, by the joints' names.
+bool standsAlongZ(std::span<const BvhJoint> joints);
+
+// Along which axes heads lie from feet, to within 45 degrees or so, over the frames of a motion.
+class HeadDirections {
+ public:
+  // Of a frame, from the feet to the head.
+  void add(const Vec3& upwards);
+  // Of the frames, in [0, 1]; 0 without any.
+  double fractionAlong(UpAxis axis) const;
+  // The head is below the feet in all frames, or nearly.
+  bool isUpsideDown(UpAxis up) const;
+
+ private:
+  std::size_t frames_ = 0;
+  std::array<std::size_t, 4> along_ = {};  // frames, by UpAxis
+};
+
+// How a body is in a motion's frames, in the file's own axes.
+struct FramePostures {
+  std::size_t frames = 0;  // that were looked at
+  HeadDirections heads;
+  Vec3 upwards = Vec3::Zero();          // mean of the unit vectors from feet to head
+  double size = 0;                      // greatest distance from feet to head
+  Vec3 lowest = Vec3::Zero();           // along each axis, of all joints and frames
+  Vec3 lowestDeviation = Vec3::Zero();  // standard deviation of the frames' lowest
+};
+// At most some two thousand frames, evenly spread. Nothing (no frames) without clip or ends.
+FramePostures framePostures(const Motion& motion, const BvhEnds& ends);
+
+// Which of Y and Z is up in the frames. `expected` unless heads lie above feet along the other axis by more than along
+// that, as in the reader of .npz, in most frames; and then by where the body touches the ground: who walks on it keeps
+// the lowest point at one height and moves across it, while who lies, crawls or swims moves along the other axis.
+// Where neither is the case the expected axis stays, and the frames are ambiguous unless some of them stand along it.
+struct FramesUp {
+  UpAxis axis = UpAxis::kY;
+  bool ambiguous = false;
+};
+FramesUp upOfFrames(const FramePostures& postures, UpAxis expected);
+
+// What the warnings "upside-down" and "converted-axes" say of a file that was read with that axis up.
+std::string upsideDownMessage(UpAxis up);
+std::string convertedAxesMessage(UpAxis up);
 
 }  // namespace limber

@@ -63,12 +63,46 @@ class LineSplitter {
   bool afterReturn_ = false;
 };
 
-// From Z up to Y up: a quarter turn about X.
-template <typename Vector>
-void turnUpright(Vector& v) {
-  const auto y = v[1];
-  v[1] = v[2];
-  v[2] = -y;
+// Space and locals turned alike: rest pose and frames.
+void turnAll(Motion& motion, UpAxis up) {
+  for (Joint& joint : motion.skeleton.joints) turnUpright(joint.rest.translation, up);
+  for (Clip& clip : motion.clips) {
+    for (auto& track : clip.translations) {
+      for (Vec3f& value : track.values) turnUpright(value, up);
+    }
+    for (auto& track : clip.rotations) {
+      for (Eigen::Quaternionf& value : track.values) turnUpright(value.coeffs(), up);
+    }
+    if (up != UpAxis::kZ && up != UpAxis::kMinusZ) continue;
+    for (auto& track : clip.scales) {
+      for (Vec3f& value : track.values) std::swap(value.y(), value.z());
+    }
+  }
+}
+
+template <typename Value>
+Track<Value>& trackOf(std::vector<Track<Value>>& tracks, Index joint, const Value& atRest) {
+  for (Track<Value>& track : tracks) {
+    if (track.joint == joint) return track;
+  }
+  return tracks.emplace_back(Track<Value>{joint, Interpolation::kLinear, {0.0f}, {atRest}});
+}
+
+// The frames alone, by their roots.
+void turnFrames(Motion& motion, const Quat& turn) {
+  for (Clip& clip : motion.clips) {
+    for (Index j = 0; j < motion.skeleton.jointCount(); ++j) {
+      const Joint& joint = motion.skeleton.joints[j];
+      if (joint.parent) continue;
+      for (Vec3f& value : trackOf(clip.translations, j, Vec3f(joint.rest.translation.cast<float>())).values) {
+        value = (turn * value.cast<double>()).cast<float>();
+      }
+      for (Eigen::Quaternionf& value :
+           trackOf(clip.rotations, j, Eigen::Quaternionf(joint.rest.rotation.cast<float>())).values) {
+        value = (turn * value.cast<double>()).cast<float>();
+      }
+    }
+  }
 }
 
 class BvhReader {
@@ -241,19 +275,55 @@ class BvhReader {
         for (Vec3f& value : track.values) value = (unit * value.cast<double>()).cast<float>();
       }
     }
-    if (options_.up == UpAxis::kY || (!options_.up && !standsAlongZ(hierarchy_.joints()))) return;
-    warnings_.add("converted-axes", "files with Z up are turned to Y up");
-    for (Joint& joint : motion.skeleton.joints) turnUpright(joint.rest.translation);
-    for (Clip& clip : motion.clips) {
-      for (auto& track : clip.translations) {
-        for (Vec3f& value : track.values) turnUpright(value);
-      }
-      for (auto& track : clip.rotations) {
-        for (Eigen::Quaternionf& value : track.values) turnUpright(value.coeffs());
-      }
-      for (auto& track : clip.scales) {
-        for (Vec3f& value : track.values) std::swap(value.y(), value.z());
-      }
+    turnToYUp(motion);
+  }
+
+  void turnToYUp(Motion& motion) {
+    const std::vector<BvhJoint>& joints = hierarchy_.joints();
+    const BvhEnds ends = findEnds(joints);
+    const FramePostures postures = framePostures(motion, ends);
+    UpAxis expected = UpAxis::kY, up = UpAxis::kY;
+    if (options_.up) {
+      expected = up = *options_.up;
+    } else {
+      if (standsAlongZ(joints)) expected = UpAxis::kZ;
+      const FramesUp frames = upOfFrames(postures, expected);
+      up = frames.axis;
+      if (frames.ambiguous) warnOfAmbiguity(expected);
+    }
+    UpAxis restUp = up == UpAxis::kY ? expected : up;
+    if (restsAlong(UpAxis::kY, joints, ends)) restUp = UpAxis::kY;
+    if (options_.restUp) restUp = *options_.restUp;
+
+    turnAll(motion, restUp);
+    if (restUp != up) turnFrames(motion, uprightTurn(up) * uprightTurn(restUp).conjugate());
+    warnOfTurns(up, restUp, expected);
+    if (postures.heads.isUpsideDown(up)) warnings_.add("upside-down", upsideDownMessage(up));
+  }
+
+  void warnOfAmbiguity(UpAxis expected) {
+    if (expected == UpAxis::kY) {
+      warnings_.add(
+          "maybe-z-up",
+          "the body lies in all frames, or these have Z up: where it should stand, read the file with --up z");
+    } else {
+      warnings_.add(
+          "maybe-y-up",
+          "the body lies in all frames, or these have Y up: where it should stand, read the file with --up y");
+    }
+  }
+
+  void warnOfTurns(UpAxis up, UpAxis restUp, UpAxis expected) {
+    if (up == UpAxis::kY && restUp == UpAxis::kY) return;
+    if (up == expected) {
+      warnings_.add("converted-axes", convertedAxesMessage(up));
+    } else if (up == UpAxis::kZ) {
+      warnings_.add("converted-axes",
+                    "frames with Z up are turned to Y up; where the body should lie, read the file with --up y");
+    } else {
+      warnings_.add("converted-axes",
+                    "a rest pose with Z up is turned to Y up, as the frames are; where the body should lie, read the "
+                    "file with --up z");
     }
   }
 

@@ -5,20 +5,22 @@
 #include <optional>
 #include <string_view>
 
+#include "limber/asset/up_axis.h"
 #include "limber/core/file.h"
 #include "limber/skeleton/motion.h"
 
 namespace limber {
 
-enum class UpAxis { kY, kZ };
-
 struct BvhOptions {
   // A BVH does not say its unit: lengths are taken as metres unless told. Often it is the centimetre, and in the CMU
   // recordings 1 / 0.45 inch (0.056444 m).
   double metresPerUnit = 1;
-  // None: told from the rest pose. Z where the joints named "head" lie above those named "foot", "toe" or "ankle" along
-  // Z, and hardly along Y; else Y.
+  // Of the frames. None: Y or Z is inferred. Expected is Z where in the rest pose the joints named "head" lie above
+  // those named "foot", "toe" or "ankle" along Z, and hardly along Y, else Y; the frames overrule that (upOfFrames).
   std::optional<UpAxis> up;
+  // Of the rest pose. None: Y where it stands along Y clearly; else that of the frames or, where they are inferred to
+  // be Y, the expected one.
+  std::optional<UpAxis> restUp = std::nullopt;
 };
 
 // A motion with one clip (none where the file has no frame), named after the file.
@@ -30,9 +32,10 @@ struct BvhOptions {
 // if they were added to them (programs differ; warning "relative-positions").
 //
 // Accepted: any blanks and line ends, decimal commas, several roots, rotations that are constant (one key). Warnings:
-// "converted-axes", "frame-count" (more or fewer frames than announced), "cut-frame" (the last row is incomplete and
-// left out), "bad-numbers" (not finite, or too large: the frame before stands in), "frame-time" (not positive: 1/30 s),
-// "no-motion", "duplicate-names", "decimal-commas", "trailing-text".
+// "converted-axes", "maybe-z-up" and "maybe-y-up" (a body that lies all the time, or stands along another axis),
+// "upside-down" (the head is below the feet in all frames), "frame-count" (more or fewer frames than announced),
+// "cut-frame" (the last row is incomplete and left out), "bad-numbers" (not finite, or too large: the frame before
+// stands in), "frame-time" (not positive: 1/30 s), "no-motion", "duplicate-names", "decimal-commas", "trailing-text".
 //
 // Throws Error kBadData with file and line ("walk.bvh: line 187") for everything else, kLimit beyond 2^22 frames,
 // kBadArgument for a unit that is not positive. Time is linear in the file; memory that of the result and one line.

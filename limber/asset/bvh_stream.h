@@ -10,8 +10,8 @@
 
 namespace limber {
 
-// Lengths are taken as metres; Z up is told as in bvh_read.h, and the roots turned. "Frames:" and "Frame Time:" may
-// stand in front of the rows or not.
+// Lengths are taken as metres; Z up is inferred from the rest pose alone (bvh_read.h), and the roots turned. "Frames:"
+// and "Frame Time:" may stand in front of the rows or not.
 class BvhStream {
  public:
   BvhStream();

@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "limber/asset/bvh_axes.h"
 #include "limber/asset/smpl_arrays.h"
 #include "limber/asset/smpl_skeleton.h"
 #include "limber/asset/stored_archive.h"
@@ -290,19 +291,30 @@ class SmplFrames {
       turned_[j] = joint.parent ? turned_[*joint.parent] * rotation : rotation;
       places_[j] = joint.parent ? places_[*joint.parent] + turned_[*joint.parent] * joint.rest.translation : pelvis;
       lowest_ = lowest_.cwiseMin(places_[j]);
+      highest_ = highest_.cwiseMax(places_[j]);
       if (joint.parent) turns_[j].add(rotation, roots_.size());
     }
     constexpr std::size_t kHead = 15, kLeftAnkle = 7, kRightAnkle = 8;
-    upwards_ += places_[kHead] - 0.5 * (places_[kLeftAnkle] + places_[kRightAnkle]);
+    const Vec3 upwards = places_[kHead] - 0.5 * (places_[kLeftAnkle] + places_[kRightAnkle]);
+    upwards_ += upwards;
+    heads_.add(upwards);
     roots_.push_back({places_[0], turned_[0]});
   }
 
-  UpAxis up() const { return upwards_.z() > upwards_.y() ? UpAxis::kZ : UpAxis::kY; }
-  double lowest(UpAxis up) const { return up == UpAxis::kZ ? lowest_.z() : lowest_.y(); }
+  // One that is upside down along Y does not have Z up.
+  UpAxis up() const { return upwards_.z() > std::abs(upwards_.y()) ? UpAxis::kZ : UpAxis::kY; }
+  double lowest(UpAxis up) const {
+    Vec3 low = lowest_, high = highest_;
+    turnUpright(low, up);
+    turnUpright(high, up);
+    return std::min(low.y(), high.y());
+  }
+
+  const HeadDirections& heads() const { return heads_; }
 
   // Turned to Y up and raised by so many metres.
   Clip takeClip(UpAxis up, double raise, double framesPerSecond) {
-    const Quat turn = up == UpAxis::kZ ? Quat(std::sqrt(0.5), -std::sqrt(0.5), 0, 0) : Quat::Identity();
+    const Quat turn = uprightTurn(up);
     std::vector<float> times;
     Track<Vec3f> translations;
     Track<Eigen::Quaternionf> rotations;
@@ -337,6 +349,8 @@ class SmplFrames {
   std::vector<JointTurns> turns_;  // none of the pelvis
   std::vector<Root> roots_;
   Vec3 lowest_ = Vec3::Constant(std::numeric_limits<double>::infinity());
+  Vec3 highest_ = Vec3::Constant(-std::numeric_limits<double>::infinity());
+  HeadDirections heads_;
   Vec3 upwards_ = Vec3::Zero();  // from the ankles to the head, summed
 };
 
@@ -368,7 +382,8 @@ Motion motionOfArrays(const NpzFiles& arrays, std::string_view name, const SmplO
     frames.add(row, pelvis);
   }
   const UpAxis up = options.up.value_or(frames.up());
-  if (up == UpAxis::kZ) motion.warnings.add("converted-axes", "files with Z up are turned to Y up");
+  if (up != UpAxis::kY) motion.warnings.add("converted-axes", convertedAxesMessage(up));
+  if (frames.heads().isUpsideDown(up)) motion.warnings.add("upside-down", upsideDownMessage(up));
   const double raise = options.body ? 0 : lowestAtRest(motion.skeleton) - frames.lowest(up);
   motion.clips.push_back(frames.takeClip(up, raise, motion.framesPerSecond));
   motion.clips.back().name = motion.name;

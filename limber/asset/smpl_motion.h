@@ -12,7 +12,7 @@
 namespace limber {
 
 struct SmplOptions {
-  // None: told from the frames. Z where heads lie above ankles along Z by more than along Y, over all frames.
+  // None: told from the frames. Z where heads lie above ankles along Z by more than along Y or -Y, over all frames.
   std::optional<UpAxis> up;
   // A model whose joints (smplSkeleton) are taken, shaped by the motion's betas; null for a person of our own.
   std::shared_ptr<const NpzFiles> body;
@@ -37,10 +37,11 @@ struct SmplOptions {
 // rests where it is there. Without one, smplSkeleton's; as nobody tells then where the pelvis rests, the clip is raised
 // or lowered as a whole until the lowest joint of all frames is as high as that of the rest pose.
 //
-// Warnings: "converted-axes" (Z up turned to Y up), "hand-components" (hands as another number of values than 45: the
-// components of a model, left at rest), "bad-numbers" (not finite, or too large: the frame before stands in),
-// "frame-rate". Throws Error kBadData naming the array: none of poses, of another shape than the above, of other
-// numbers of frames, no frame; kLimit beyond 2^22 frames; kUnsupported as readNpy does; where() begins with `name`.
+// Warnings: "converted-axes" (another axis up turned to Y up), "upside-down" (heads are below ankles in all frames),
+// "hand-components" (hands as another number of values than 45: the components of a model, left at rest), "bad-numbers"
+// (not finite, or too large: the frame before stands in), "frame-rate". Throws Error kBadData naming the array: none of
+// poses, of another shape than the above, of other numbers of frames, no frame; kLimit beyond 2^22 frames; kUnsupported
+// as readNpy does; where() begins with `name`.
 Motion readSmplMotion(const NpzFiles& arrays, std::string_view name, const SmplOptions& options = {});
 
 // The same from the archive (readZipArchive).

@@ -60,9 +60,9 @@ std::vector<Vec3> placesAt(const Motion& motion, double seconds) {
   return posePositions(motion.skeleton, pose);
 }
 
-// Frames of a person standing with Y up or Z up, who turns all joints a little, each in its own way.
+// Frames of a person standing with that axis up, who turns all joints a little, each in its own way.
 std::vector<double> swayingPoses(std::size_t frames, std::size_t joints, UpAxis up) {
-  const Mat3 upright = Eigen::AngleAxisd(up == UpAxis::kZ ? kPi / 2 : 0, Vec3::UnitX()).toRotationMatrix();
+  const Mat3 upright = uprightTurn(up).conjugate().toRotationMatrix();
   std::vector<double> values;
   for (std::size_t f = 0; f < frames; ++f) {
     for (std::size_t j = 0; j < joints; ++j) {
@@ -81,7 +81,7 @@ NpzFiles swaying(std::size_t joints, UpAxis up = UpAxis::kY, std::size_t frames 
   std::vector<double> trans;
   for (std::size_t f = 0; f < frames; ++f) {
     const auto along = 0.1 * static_cast<double>(f);
-    const Vec3 at = up == UpAxis::kZ ? Vec3(along, 0, 0.9) : Vec3(along, 0.9, 0);
+    const Vec3 at = uprightTurn(up).conjugate() * Vec3(along, 0.9, 0);
     trans.insert(trans.end(), at.data(), at.data() + 3);
   }
   files["trans.npy"] = npyDoubles({frames, 3}, trans);
@@ -128,6 +128,20 @@ TEST(SmplMotion, TellsWhichAxisPointsUp) {
   SmplOptions told;
   told.up = UpAxis::kY;
   EXPECT_TRUE(readSmplMotion(swaying(22, UpAxis::kZ), "z.npz", told).warnings.empty());
+}
+
+TEST(SmplMotion, FramesUpsideDownAreReportedAndTurnedOnRequest) {
+  const Motion upright = readSmplMotion(swaying(22), "y.npz");
+  EXPECT_THAT(testing::warningKinds(readSmplMotion(swaying(22, UpAxis::kMinusY), "down.npz").warnings),
+              ElementsAre("upside-down"));
+  for (const UpAxis up : {UpAxis::kMinusY, UpAxis::kMinusZ}) {
+    SmplOptions options;
+    options.up = up;
+    const Motion turned = readSmplMotion(swaying(22, up), "turned.npz", options);
+    EXPECT_THAT(testing::warningKinds(turned.warnings), ElementsAre("converted-axes"));
+    const std::vector<Vec3> at = placesAt(upright, 0.03), also = placesAt(turned, 0.03);
+    for (std::size_t j = 0; j < at.size(); ++j) EXPECT_LT((at[j] - also[j]).norm(), 1e-5);
+  }
 }
 
 // The lowest joint of all frames is as high as the toes at rest; the way over the ground is trans's.

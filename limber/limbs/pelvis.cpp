@@ -25,6 +25,9 @@ constexpr double kStay = 0.5;          // legs that these go against, which want
 constexpr double kApart = 0.75;        // share of what the bends of legs at both ends want these to move apart
 constexpr double kStretch = 0.998;     // of a leg's length: fully stretched knees pop
 constexpr double kKneesFold = 0.75;    // of Limb::folded: about the nearest that people's feet come to their hips
+// Of the distance to which a leg folds: the depth below its hip at which the pose has a foot that keeps the body above
+// it; the nearer to the level of the hip, the less.
+constexpr double kClearlyBelow = 0.5;
 // Of turning with planted legs: leg lengths, the more the less it does; and radians.
 constexpr double kStiffOnTwo = 0.15, kStiffOnOne = 0.3, kMostTurn = 0.8;
 
@@ -198,17 +201,20 @@ double Pelvis::shiftFor(std::span<const Leg> legs, const BodyFrame& frame, const
 }
 
 // So that no planted foot of a foot-driven leg is nearer to its hip than the leg folds, where it would go astray,
-// nor a person's further than knees do, which else turn round.
+// nor a person's further than knees do, which else turn round. That is for legs which the pose has below their hips,
+// though goals may lie above these (of a body that comes out of the ground): the hip has to rise over the goal. A foot
+// that the pose has above its hip (a handstand, a high kick, legs that point up) is to stay there.
 double Pelvis::raiseFor(std::span<const Leg> legs, const BodyFrame& frame, double shift) const {
   double sum = 0;
   for (const Leg& leg : legs) {
     const Vec3 way = leg.goal - frame.positions[leg.upper] - Vec3(0, shift, 0);
-    const double own = (frame.positions[leg.end] - frame.positions[leg.upper]).norm();
-    const double least = leg.footDriven ? leg.folded : std::min(kKneesFold * leg.folded, own);
+    const Vec3 own = (leg.footDriven ? leg.place : frame.positions[leg.end]) - frame.positions[leg.upper];
+    const double least = leg.footDriven ? leg.folded : std::min(kKneesFold * leg.folded, own.norm());
     const double across = std::hypot(way.x(), way.z());
     if (leg.hock || across >= least || !(leg.footDriven || setup_.person)) continue;  // hocks fold as well
     const double lacks = std::sqrt(least * least - across * across) + way.y();
-    const double needed = followed(leg) * softPositive(lacks, kSoftFold * setup_.targetHipHeight);
+    const double below = smoothStep(-own.y() / (kClearlyBelow * least));
+    const double needed = below * followed(leg) * softPositive(lacks, kSoftFold * setup_.targetHipHeight);
     sum += needed * needed * needed * needed;
   }
   return std::sqrt(std::sqrt(sum));

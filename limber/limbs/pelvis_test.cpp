@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <string>
+
 #include "limber/limbs/limb_goals.h"
 #include "limber/matching/testing/test_motion.h"
 
@@ -169,6 +172,72 @@ TEST(Pelvis, NothingJumpsWhereALegBecomesTooShort) {
     }
     before = up;
   }
+}
+
+// A free leg of the person that points up, straight or bent: its foot is where its joint angles have it, which asks
+// nothing of the pelvis.
+TEST(Pelvis, FeetAboveTheHipsDoNotLiftTheBody) {
+  struct Position {
+    const char* name;
+    Quat hips, thighs, knees;
+  };
+  const Vec3 aside = Vec3::UnitX(), ahead = Vec3::UnitZ();
+  const Quat none = Quat::Identity();
+  const std::array positions = {
+      Position{"handstand", turn(ahead, 180), none, none},
+      Position{"bent handstand", turn(ahead, 180), turn(-aside, 45), turn(aside, 110)},
+      Position{"kick", none, turn(-aside, 178), none},
+      Position{"lies, legs up", turn(-aside, 90), turn(-aside, 90), none},
+      Position{"lies, legs to the chest", turn(-aside, 90), turn(-aside, 120), turn(aside, 110)}};
+  for (const Position& position : positions) {
+    PelvisOf person(practiceHumanoid());
+    person.turnJoint("hips", position.hips);
+    for (const char* side : {"left", "right"}) {
+      person.turnJoint((side + std::string("UpperLeg")).c_str(), position.thighs);
+      person.turnJoint((side + std::string("LowerLeg")).c_str(), position.knees);
+    }
+    person.level();
+    LimbGoals goals(person.setup_, person.root_);
+    for (Leg& leg : goals.legs()) {
+      leg.goal = person.frame_.positions[leg.end];
+      EXPECT_GT(leg.goal.y(), person.frame_.positions[leg.upper].y()) << position.name;
+    }
+    EXPECT_NEAR(person.pelvis_.moveFor(goals.legs(), person.frame_).up, 0, 1e-3) << position.name;
+  }
+}
+
+// A folded leg swings up in front of the body until its foot is above its hip, and the goal is nearer to the hip than
+// the leg folds. While the foot is below, the body rises so that the leg need not fold further.
+TEST(Pelvis, NothingJumpsWhereAFootRisesPastItsHip) {
+  PelvisOf person(practiceHumanoid());
+  person.turnJoint("leftLowerLeg", turn(Vec3::UnitX(), 120));
+  double before = 0, highest = 0;
+  for (int step = 0; step <= 360; ++step) {
+    person.turnJoint("leftUpperLeg", turn(-Vec3::UnitX(), 60 + 0.5 * step));
+    person.level();
+    LimbGoals goals(person.setup_, person.root_);
+    Leg &leg = goals.legs()[0], &other = goals.legs()[1];
+    other.goal = person.frame_.positions[other.end];
+    const Vec3 hip = person.frame_.positions[leg.upper], foot = person.frame_.positions[leg.end];
+    leg.goal = hip + 0.4 * leg.folded * (foot - hip).normalized();
+    const double up = person.pelvis_.moveFor(goals.legs(), person.frame_).up;
+    if (step > 0) {
+      EXPECT_LT(std::abs(up - before), 0.03 * leg.folded) << step;
+    }
+    highest = std::max(highest, up);
+    before = up;
+  }
+  EXPECT_GT(highest, 0.05);
+  EXPECT_NEAR(before, 0, 0.005) << "with the foot above";
+}
+
+// As of somebody who comes out of the ground: the ground holds a goal above a hip that is below it.
+TEST(Pelvis, TheBodyRisesOverAGoalThatIsAboveItsHip) {
+  PelvisOf person(practiceHumanoid());
+  person.level();
+  LimbGoals goals(person.setup_, person.root_);
+  for (Leg& leg : goals.legs()) leg.goal = person.frame_.positions[leg.upper] + Vec3(0, 0.2, 0.05);
+  EXPECT_GT(person.pelvis_.moveFor(goals.legs(), person.frame_).up, 0.3);
 }
 
 // A foot-driven one is led away in front, on the ground, as of someone who falls: it pulls the body down, and
