@@ -12,6 +12,7 @@
 #include "limber/evaluate/retarget_table.h"
 #include "limber/evaluate/skinned_model.h"
 #include "limber/matching/plain_skeleton.h"
+#include "limber/matching/rest_form.h"
 #include "limber/pipeline/stand_upright.h"
 #include "progress_line.h"
 
@@ -78,7 +79,7 @@ void run(const MotionEvaluationArguments& options) {
   const Clip& original = clipOfSource(source, options.sourceClip, moved.name);
   SkeletonMap map;
   if (options.mapFile.empty()) {
-    map = matchSkeletons(source.skeleton, result.skeleton);
+    map = matchMotion(source, result.skeleton);
   } else {
     const Bytes text = readFile(options.mapFile);
     map = skeletonMapFromJson({reinterpret_cast<const char*>(text.data()), text.size()}, source.skeleton,

@@ -9,6 +9,7 @@
 #include "limber/asset/motion_io.h"
 #include "limber/asset/write.h"
 #include "limber/core/counted.h"
+#include "limber/matching/rest_form.h"
 #include "limber/vrm/hang_bones.h"
 #include "limber/vrm/vrm_bones.h"
 
@@ -38,7 +39,7 @@ struct VrmaMotion {
 };
 
 VrmaMotion motionAlone(const Motion& motion, Warnings& warnings) {
-  VrmaMotion read{motion.skeleton, motion.clips, vrmBones(motion.skeleton, motion.name, warnings), {}};
+  VrmaMotion read{motion.skeleton, motion.clips, vrmBones(skeletonWithForm(motion), motion.name, warnings), {}};
   read.rest = vrmRestPose(motion, read.bones);
   return read;
 }

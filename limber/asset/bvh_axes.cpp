@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -28,13 +30,39 @@ int indexOf(UpAxis axis) {
   return axis == UpAxis::kY || axis == UpAxis::kMinusY ? 1 : 2;
 }
 
+double meanHeight(std::span<const Vec3> positions, std::span<const Index> joints) {
+  double sum = 0;
+  for (const Index joint : joints) sum += positions[joint].y();
+  return sum / static_cast<double>(joints.size());
+}
+
+// The lowest joint of the tree that has all heads and feet below it or is one of them.
+std::optional<Index> carrierOfAll(std::span<const BvhJoint> joints, const BvhEnds& ends) {
+  std::vector<std::size_t> below(joints.size(), 0);
+  for (const std::vector<Index>* list : {&ends.heads, &ends.feet}) {
+    for (const Index joint : *list) ++below[joint];
+  }
+  for (std::size_t j = joints.size(); j-- > 0;) {
+    if (joints[j].parent) below[*joints[j].parent] += below[j];
+  }
+  for (std::size_t j = joints.size(); j-- > 0;) {
+    if (below[j] == ends.heads.size() + ends.feet.size()) return static_cast<Index>(j);
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 bool restsAlong(UpAxis up, std::span<const BvhJoint> joints, const BvhEnds& ends) {
   if (!ends.known()) return false;
-  Vec3 upwards = ends.upwards(restPositionsOf(joints));
-  turnUpright(upwards, up);
-  return upwards.y() > kClearly * std::abs(upwards.z());
+  std::vector<Vec3> positions = restPositionsOf(joints);
+  for (Vec3& position : positions) turnUpright(position, up);
+  const Vec3 upwards = ends.upwards(positions);
+  if (const std::optional<Index> carrier = carrierOfAll(joints, ends)) {
+    const double height = positions[*carrier].y();
+    if (meanHeight(positions, ends.heads) < height || meanHeight(positions, ends.feet) > height) return false;
+  }
+  return upwards.y() > kClearly * std::hypot(upwards.x(), upwards.z());
 }
 
 bool standsAlongZ(std::span<const BvhJoint> joints) {

@@ -11,7 +11,8 @@
 
 namespace limber {
 
-// Heads lie above feet along that axis in the rest pose, clearly.
+// Heads lie above feet along that axis in the rest pose, clearly, and on the other side of the joint that carries both: in
+// a rest pose that has all bones along one axis they do not.
 bool restsAlong(UpAxis up, std::span<const BvhJoint> joints, const BvhEnds& ends);
 
 // Heads lie above feet along Z, by the joints' names.

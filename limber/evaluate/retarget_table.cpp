@@ -10,6 +10,7 @@
 #include "limber/limbs/body_skin.h"
 #include "limber/limbs/roughness.h"
 #include "limber/matching/plain_skeleton.h"
+#include "limber/matching/rest_form.h"
 
 namespace limber {
 
@@ -86,8 +87,9 @@ class Scorer {
       const PlainSkeleton plain(character.skeleton);
       RetargetOptions options;
       options.skin = character.skin;
-      const RetargetSetup setup(skeleton, plain.skeleton(), matchSkeletons(skeleton, plain.skeleton()), options,
-                                &source);
+      const std::optional<Pose> pose = poseWithForm(skeleton, source.poses);
+      const SkeletonMap map = matchSkeletons(skeleton, plain.skeleton(), false, pose ? &*pose : nullptr);
+      const RetargetSetup setup(skeleton, plain.skeleton(), map, options, &source);
       if (!hasLegs(setup)) {
         skipped_.add("legless", "pairs without legs left out", fmt::format("{} on {}", motion.name, character.name));
         return;

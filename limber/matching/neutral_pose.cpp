@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "limber/core/rotation.h"
 #include "limber/matching/loose_joints.h"
+#include "limber/matching/rest_form.h"
 #include "limber/skeleton/chain.h"
 
 namespace limber {
@@ -46,9 +48,18 @@ Vec3 snapped(const Vec3& direction) {
   return axis.dot(direction.normalized()) > std::cos(kNearAxis) ? axis : Vec3(direction.normalized());
 }
 
-// Which ways lead from the hips to the head and to the feet, as far as they are there.
+Vec3 sumOf(const std::vector<Vec3>& directions) {
+  Vec3 sum = Vec3::Zero();
+  for (const Vec3& each : directions) sum += each;
+  return sum;
+}
+
+// Displacements from the hips to the head and to each foot, as far as they are there.
 struct Stance {
-  Vec3 head = Vec3::Zero(), feet = Vec3::Zero();
+  Vec3 head = Vec3::Zero();
+  std::vector<Vec3> feet;
+  Vec3 bothFeet() const { return sumOf(feet); }
+  bool isWhole() const { return !head.isZero() && !feet.empty(); }
 };
 Stance stanceOf(const Skeleton& skeleton, const Pose& pose, const SkeletonMap& map, MapSide side) {
   const std::vector<Affine> globals = poseGlobals(skeleton, pose);
@@ -60,7 +71,7 @@ Stance stanceOf(const Skeleton& skeleton, const Pose& pose, const SkeletonMap& m
   stance.head = globals[head ? *head : trunk->back()].translation() - from;
   for (const Side each : kSides) {
     if (const std::optional<Index> foot = firstOfPart(map, side, leg(each, Segment::kEnd)))
-      stance.feet += globals[*foot].translation() - from;
+      stance.feet.push_back(globals[*foot].translation() - from);
   }
   return stance;
 }
@@ -69,17 +80,55 @@ double angleOf(const Vec3& a, const Vec3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
+// From the right hip to the left one, and from shoulder to shoulder, as far as they are there.
+std::vector<Vec3> leftsOf(const SkeletonMap& map, MapSide side, const std::vector<Vec3>& positions) {
+  std::vector<Vec3> lefts;
+  for (const auto limb : {leg, arm}) {
+    const std::optional<Index> one = firstOfPart(map, side, limb(Side::kLeft, Segment::kUpper, 0)),
+                               other = firstOfPart(map, side, limb(Side::kRight, Segment::kUpper, 0));
+    if (one && other) lefts.push_back(positions[*one] - positions[*other]);
+  }
+  return lefts;
+}
+
+// How far a person is from standing straight and upright, in radians: the trunk from +Y, each leg from the line of the
+// trunk, and the shoulders from the line of the hips.
+double bendOf(const Stance& stance, const std::vector<Vec3>& lefts) {
+  double bend = angleOf(stance.head, Vec3::UnitY());
+  for (const Vec3& foot : stance.feet) bend += angleOf(foot, -stance.head);
+  return lefts.size() == 2 ? bend + angleOf(lefts[0], lefts[1]) : bend;
+}
+
+// A person in a frame of a motion, turned about the hips to face +Z. Gravity says what is up in one who stands; one who
+// crawls or lies stands up along the trunk.
+Pose facingAhead(const Skeleton& skeleton, Pose pose, const SkeletonMap& map, MapSide side) {
+  const std::vector<Vec3> positions = posePositions(skeleton, pose);
+  std::vector<Vec3> lefts = leftsOf(map, side, positions);
+  for (Vec3& each : lefts) each.normalize();  // hips that are turned against the shoulders share the difference
+  const Vec3 trunk = stanceOf(skeleton, pose, map, side).head, level = sumOf(lefts);
+  const Vec3 up = angleOf(trunk, Vec3::UnitY()) < kStoops ? Vec3(Vec3::UnitY()) : Vec3(trunk.normalized());
+  const Vec3 left = level - level.dot(up) * up;
+  if (!(left.norm() > 1e-6 * level.norm())) return pose;
+  Mat3 axes;
+  axes << left.normalized(), up, left.normalized().cross(up);
+  const Quat turn(Mat3(axes.transpose()));
+  const Vec3 hips = positions[firstOfPart(map, side, kHips).value()];
+  for (Index j = 0; j < skeleton.jointCount(); ++j) {
+    if (skeleton.joints[j].parent) continue;
+    Transform& local = pose.locals[j];
+    local.translation = hips + turn * (local.translation - hips);
+    local.rotation = (turn * local.rotation).normalized();
+  }
+  return pose;
+}
+
 // Of people, from left and right limbs, and from the hips to the head.
 std::optional<Quat> bodyFrame(const SkeletonMap& map, MapSide side, const std::vector<Vec3>& positions) {
   const auto at = [&](const BodyPart& part) -> std::optional<Vec3> {
     const std::optional<Index> joint = firstOfPart(map, side, part);
     return joint ? std::optional(positions[*joint]) : std::nullopt;
   };
-  Vec3 left = Vec3::Zero(), up = Vec3::Zero();
-  for (const auto limb : {leg, arm}) {
-    const auto one = at(limb(Side::kLeft, Segment::kUpper, 0)), other = at(limb(Side::kRight, Segment::kUpper, 0));
-    if (one && other) left += *one - *other;
-  }
+  Vec3 left = sumOf(leftsOf(map, side, positions)), up = Vec3::Zero();
   const std::optional<Vec3> hips = at(kHips);
   for (const BodyPart& part : {kTrunk, kNeck, kHead}) {
     if (hips && at(part)) up += *at(part) - *hips;
@@ -224,22 +273,25 @@ std::vector<Index> matchedJoints(const SkeletonMap& map, MapSide side) {
 
 bool standsUpright(const Skeleton& skeleton, const Pose& pose, const SkeletonMap& map, MapSide side) {
   const Stance stance = stanceOf(skeleton, pose, map, side);
-  return stance.head.isZero() || stance.feet.isZero() || angleOf(stance.head, stance.feet) > kOpposite;
+  if (!stance.isWhole()) return true;
+  const auto isOpposite = [&](const Vec3& foot) { return angleOf(stance.head, foot) > kOpposite; };
+  if (hasForm(skeleton, pose)) return stance.bothFeet().isZero() || isOpposite(stance.bothFeet());
+  return std::all_of(stance.feet.begin(), stance.feet.end(), isOpposite);
 }
 
 Pose uprightPose(const Skeleton& skeleton, std::span<const Pose> motion, const SkeletonMap& map, MapSide side) {
   const Pose rest = restPose(skeleton);
   if (standsUpright(skeleton, rest, map, side)) return rest;
-  const Pose* best = &rest;
-  double least = kPi;
+  const Pose* best = nullptr;
+  double least = std::numeric_limits<double>::infinity();
   for (const Pose& pose : motion) {
     const Stance stance = stanceOf(skeleton, pose, map, side);
-    const double off = angleOf(stance.head, Vec3::UnitY()) + angleOf(stance.feet, -Vec3::UnitY());
-    if (!(off < least)) continue;
-    least = off;
+    const double bend = bendOf(stance, leftsOf(map, side, posePositions(skeleton, pose)));
+    if (!stance.isWhole() || !(bend < least)) continue;
+    least = bend;
     best = &pose;
   }
-  return *best;
+  return best ? facingAhead(skeleton, *best, map, side) : rest;
 }
 
 NeutralPose neutralPose(const Skeleton& skeleton, const Pose& resting, const SkeletonMap& map, MapSide side,

@@ -41,11 +41,14 @@ NeutralPose neutralPoseIn(const Quat& toBody, const Skeleton& skeleton, const Po
                           MapSide side);
 
 // Does the person stand in that pose: legs and head on opposite sides of the hips? Some programs write motions whose
-// rest pose has all bones along one axis; it tells nothing. True for skeletons without legs or head.
+// rest pose has all bones along one axis; it tells nothing (hasForm, rest_form.h), but where each leg is opposite to
+// the head all the same. True for skeletons without legs or head.
 bool standsUpright(const Skeleton& skeleton, const Pose& pose, const SkeletonMap& map, MapSide side);
 
-// The rest pose if the person stands in it, else the pose of the motion that is most like standing: legs down and trunk
-// up (+Y). The rest pose again where no pose stands.
+// The rest pose if the person stands in it, else the pose of the motion that is most like standing: legs in line with
+// the trunk, and the trunk up. In a frame of a motion gravity is along -Y, and the person faces anywhere: that pose is
+// turned as a whole to stand along +Y and to face +Z, so that toBody is the identity and the heading of the motion, or
+// that it lies or crawls, stays in it. The rest pose again where there is no motion.
 Pose uprightPose(const Skeleton& skeleton, std::span<const Pose> motion, const SkeletonMap& map, MapSide side);
 
 // Of people the middle between the upper legs' joints; else the hips' joint, or the first one that is matched.

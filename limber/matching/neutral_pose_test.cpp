@@ -150,5 +150,33 @@ TEST_F(NeutralPoses, AFoldedRestPoseGivesWayToAFrameThatStands) {
   EXPECT_TRUE(standsUpright(folded, chosen, map, MapSide::kSource));
 }
 
+// A frame is under gravity, and faces where the motion goes: what stands in for the rest pose is turned to face +Z and
+// to stand, whatever it does there, so that the motion keeps its heading and those who crawl go on crawling.
+TEST_F(NeutralPoses, AFrameOfAMotionKeepsItsHeading) {
+  const PoseSequence standing{{restPose(person)}, 1.0 / 30};
+  const SkeletonMap map = matchSkeletons(person, person);
+  for (const Quat& heading :
+       {turn(Vec3::UnitY(), 37), turn(Vec3::UnitY(), 180), turn(Vec3::UnitX(), 80), turn(Vec3(0.4, 1, -0.2), 130)}) {
+    const auto [flat, motion] = limber::testing::withZeroedAxes(
+        person, limber::testing::turnedMotion(standing, heading), false, turn(Vec3(1, 1, 1), 120));
+    const Pose upright = uprightPose(flat, motion.poses, map, MapSide::kSource);
+    const NeutralPose neutral = neutralPose(flat, upright, map, MapSide::kSource, Axes{});
+    EXPECT_LT(angleBetween(neutral.toBody, Quat::Identity()), 1e-6);
+    const std::vector<Vec3> expected = restPositions(person);
+    for (Index j = 0; j < person.jointCount(); ++j) {
+      const Vec3 is = neutral.positions[j] - neutral.positions[0], right = expected[j] - expected[0];
+      EXPECT_LT((is - right).norm(), 0.06) << person.joints[j].name;  // metres: the trunk leans a little at rest
+    }
+  }
+}
+
+// Arms and legs on one line with the trunk, the right ones to its other side: together the feet are opposite to
+// nothing.
+TEST_F(NeutralPoses, AMirroredFlatRestPoseDoesNotStand) {
+  const PoseSequence standing{{restPose(person)}, 1.0 / 30};
+  const auto [flat, motion] = limber::testing::withZeroedAxes(person, standing, true, turn(Vec3::UnitZ(), 90));
+  EXPECT_FALSE(standsUpright(flat, restPose(flat), matchSkeletons(person, person), MapSide::kSource));
+}
+
 }  // namespace
 }  // namespace limber

@@ -16,6 +16,7 @@
 #include "limber/core/counted.h"
 #include "limber/core/known_error.h"
 #include "limber/matching/limb_groups.h"
+#include "limber/matching/rest_form.h"
 
 namespace limber {
 
@@ -50,18 +51,23 @@ MatchedBy evidenceOf(const Part& one, const Part& other) {
 
 class Matcher {
  public:
-  Matcher(const Skeleton& source, const Skeleton& target, bool unlikeBodies)
-      : source_(source),
+  Matcher(const Skeleton& source, const Skeleton& target, bool unlikeBodies, const Pose* sourcePose)
+      : given_(source),
+        posed_(sourcePose ? std::optional(restingIn(source, *sourcePose)) : std::nullopt),
+        source_(posed_ ? *posed_ : source),
         target_(target),
         unlikeBodies_(unlikeBodies),
-        from_(source),
+        from_(source_),
         to_(target),
-        sourceTree_(source),
+        sourceTree_(source_),
         targetTree_(target) {
     if (!standOnMany()) return;
-    from_.cutLegsWhereTheyStand(source);
+    from_.cutLegsWhereTheyStand(source_);
     to_.cutLegsWhereTheyStand(target);
   }
+  // Its members point into each other.
+  Matcher(const Matcher&) = delete;
+  Matcher& operator=(const Matcher&) = delete;
 
   SkeletonMap match() {
     const std::vector<Index> sourceLine = from_.lineOfLimbless(source_), targetLine = to_.lineOfLimbless(target_);
@@ -70,7 +76,7 @@ class Matcher {
       matchLines(sourceLine, targetLine);
     else
       matchParts();
-    if (std::optional<Twins> twins = matchTwins(source_, target_)) {
+    if (std::optional<Twins> twins = matchTwins(given_, target_)) {
       matchTwinJoints(*twins);
       map_.jointByJoint = !map_.isBiped() || areAnimals();
       if (map_.jointByJoint) splitChains();
@@ -300,6 +306,7 @@ class Matcher {
     const bool isEnd = toes + 1 == leg.joints.size() &&
                        readJointWords(readNameOf(skeleton.joints[leg.joints[toes]])).has(NameMark::kEnd);
     if (isEnd || standOnMany()) return !isEnd;
+    if (posed_ && &skeleton == &source_) return true;  // a frame of the motion, in which feet are raised as it goes
     const std::vector<Vec3> rest = restPositions(skeleton);
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const Side side : kSides) {
@@ -550,7 +557,9 @@ class Matcher {
     return fmt::format("the motion's joints show {}, the character's {}", seen(from_.anatomy), seen(to_.anatomy));
   }
 
-  const Skeleton &source_, &target_;
+  const Skeleton& given_;                // the source in its own rest pose
+  const std::optional<Skeleton> posed_;  // and in the pose that it is read in, if another is given
+  const Skeleton &source_, &target_;     // as they are read
   bool unlikeBodies_, areLines_ = false;
   BodyPieces from_, to_;
   JointTree sourceTree_, targetTree_;
@@ -586,8 +595,8 @@ std::string nameOf(const JointMatch& match, const Skeleton& target) {
   return bodyPartNamed(name) ? "joint " + name : name;  // "jaw" would be read as that part of the body
 }
 
-SkeletonMap matchSkeletons(const Skeleton& source, const Skeleton& target, bool unlikeBodies) {
-  return Matcher(source, target, unlikeBodies).match();
+SkeletonMap matchSkeletons(const Skeleton& source, const Skeleton& target, bool unlikeBodies, const Pose* sourcePose) {
+  return Matcher(source, target, unlikeBodies, sourcePose).match();
 }
 
 void checkSkeletonMap(const SkeletonMap& map, const Skeleton& source, const Skeleton& target) {

@@ -56,7 +56,11 @@ std::string nameOf(const JointMatch& match, const Skeleton& target);
 // unlikeBodies: limbs without a partner follow one of another kind as well, pair by pair along the body from front to
 // back: forelegs and wings follow arms, a spider's eight legs a person's four limbs. After Hecker, Raabe, Enslow,
 // DeWeese, Maynard, van Prooijen 2008, Real-time motion retargeting to highly varied user-created morphologies.
-SkeletonMap matchSkeletons(const Skeleton& source, const Skeleton& target, bool unlikeBodies = false);
+//
+// sourcePose (#J locals), if given, is the pose in which the source's body is read, for one whose rest pose tells
+// nothing (poseWithForm, rest_form.h). Twins are found by the rest poses all the same.
+SkeletonMap matchSkeletons(const Skeleton& source, const Skeleton& target, bool unlikeBodies = false,
+                           const Pose* sourcePose = nullptr);
 
 // Throws Error kBadData naming the part: no joint, one that is not there, or one target joint in two parts.
 void checkSkeletonMap(const SkeletonMap& map, const Skeleton& source, const Skeleton& target);

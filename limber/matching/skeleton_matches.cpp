@@ -15,6 +15,12 @@ void addBytes(std::string& key, const Number& number) {
   key.append(reinterpret_cast<const char*>(&number), sizeof number);
 }
 
+void addBytes(std::string& key, const Transform& transform) {
+  for (int i = 0; i < 3; ++i) addBytes(key, transform.translation[i]);
+  for (int i = 0; i < 4; ++i) addBytes(key, transform.rotation.coeffs()[i]);
+  for (int i = 0; i < 3; ++i) addBytes(key, transform.scale[i]);
+}
+
 void addBytes(std::string& key, const Skeleton& skeleton) {
   addBytes(key, skeleton.jointCount());
   addBytes(key, skeleton.boneShape);
@@ -25,9 +31,7 @@ void addBytes(std::string& key, const Skeleton& skeleton) {
     key += joint.declaredBone;
     addBytes(key, joint.parent.value_or(kNoIndex));
     addBytes(key, joint.radius);
-    for (int i = 0; i < 3; ++i) addBytes(key, joint.rest.translation[i]);
-    for (int i = 0; i < 4; ++i) addBytes(key, joint.rest.rotation.coeffs()[i]);
-    for (int i = 0; i < 3; ++i) addBytes(key, joint.rest.scale[i]);
+    addBytes(key, joint.rest);
   }
 }
 
@@ -47,15 +51,19 @@ std::shared_ptr<SkeletonMatches::Entry> SkeletonMatches::entryOf(std::string key
   return made;
 }
 
-SkeletonMap SkeletonMatches::match(const Skeleton& source, const Skeleton& target, bool unlikeBodies) {
+SkeletonMap SkeletonMatches::match(const Skeleton& source, const Skeleton& target, bool unlikeBodies,
+                                   const Pose* sourcePose) {
   std::string key;
   addBytes(key, unlikeBodies);
   addBytes(key, source);
   addBytes(key, target);
+  if (sourcePose) {
+    for (const Transform& local : sourcePose->locals) addBytes(key, local);
+  }
   const std::shared_ptr<Entry> entry = entryOf(std::move(key));
   const std::lock_guard lock(entry->making);  // matching starts no threads that could wait for this one
   if (!entry->map) {
-    entry->map = matchSkeletons(source, target, unlikeBodies);
+    entry->map = matchSkeletons(source, target, unlikeBodies, sourcePose);
     const std::lock_guard count(mutex_);
     ++made_;
   }

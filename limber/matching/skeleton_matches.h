@@ -12,13 +12,14 @@
 
 namespace limber {
 
-// Two skeletons are the same where their joints have the same names, declared bones, parents and rest transforms,
-// whatever file they came from. For any number of threads: what two ask for at once is made by one, while the other
-// waits.
+// Two skeletons are the same where their joints have the same names, declared bones, parents and rest transforms, and
+// are read in the same pose, whatever file they came from. For any number of threads: what two ask for at once is made
+// by one, while the other waits.
 class SkeletonMatches {
  public:
   // As matchSkeletons, whose errors it throws.
-  SkeletonMap match(const Skeleton& source, const Skeleton& target, bool unlikeBodies);
+  SkeletonMap match(const Skeleton& source, const Skeleton& target, bool unlikeBodies,
+                    const Pose* sourcePose = nullptr);
 
   // How many were made.
   std::size_t made() const;

@@ -33,6 +33,18 @@ TEST(SkeletonMatches, AreMadeOnceForEachPairAndAsWithoutThem) {
   EXPECT_EQ(matches.made(), 3u);
 }
 
+TEST(SkeletonMatches, ReadInAnotherPoseAreAnotherMatch) {
+  const Skeleton person = practiceHumanoid();
+  Pose pose = restPose(person);
+  SkeletonMatches matches;
+  matches.match(person, person, false);
+  matches.match(person, person, false, &pose);
+  pose.locals[0].translation.y() += 0.1;
+  matches.match(person, person, false, &pose);
+  matches.match(person, person, false, &pose);
+  EXPECT_EQ(matches.made(), 3u);
+}
+
 TEST(SkeletonMatches, AreMadeByOneOfManyThreads) {
   const Skeleton skeleton = practiceHumanoid();
   SkeletonMatches matches;

@@ -6,6 +6,7 @@
 
 #include "limber/core/known_error.h"
 #include "limber/matching/plain_skeleton.h"
+#include "limber/matching/rest_form.h"
 #include "limber/pipeline/stand_upright.h"
 #include "limber/retarget/retarget_clip.h"
 #include "limber/skeleton/keyframes.h"
@@ -24,9 +25,9 @@ Motion motionOf(const PortablePose& pose) {
   return asItRests(std::move(motion));
 }
 
-SkeletonMap matchBodies(const PortablePose& pose, const Skeleton& posed, const Skeleton& to) {
+SkeletonMap matchBodies(const PortablePose& pose, const Motion& posed, const Skeleton& to) {
   try {
-    return matchSkeletons(posed, to);
+    return matchMotion(posed, to);
   } catch (const Error& error) {
     if (error.code() != ErrorCode::kUnsupported) throw;
     throw KnownError(ErrorKind::kUnlikePose,
@@ -77,13 +78,14 @@ Pose putPose(const PortablePose& pose, const Skeleton& to, const Pose& now) {
   if (std::optional<Pose> same = poseByNames(pose, to)) return *std::move(same);
 
   const Motion motion = motionOf(pose);
-  const SkeletonMap map = matchBodies(pose, motion.skeleton, to);
+  const SkeletonMap map = matchBodies(pose, motion, to);
   const PlainSkeleton source(motion.skeleton), target(to);
   const PoseSequence frames = source.plain(sampleFrames(motion.skeleton, motion.clips.front(), 1));
   RetargetOptions options;
   options.characterStands = true;
-  // The rest pose tells where the ground is: who jumps has it below.
-  const RetargetSetup setup(source.skeleton(), target.skeleton(), map, options);
+  // The rest pose tells where the ground is: who jumps has it below. One without form tells nothing.
+  const bool tells = hasForm(source.skeleton(), restPose(source.skeleton()));
+  const RetargetSetup setup(source.skeleton(), target.skeleton(), map, options, tells ? nullptr : &frames);
   Pose result = target.original(retargetFrames(findRetargetMethod(kPoseMethod), setup, frames)).poses.front();
 
   const Quat turn = turnToStand(to);

@@ -8,6 +8,7 @@
 #include "limber/asset/rig_io.h"
 #include "limber/core/error.h"
 #include "limber/limbs/body_skin.h"
+#include "limber/matching/rest_form.h"
 #include "limber/motion_mix/planted_feet.h"
 #include "limber/pipeline/stand_upright.h"
 #include "limber/skeleton/clip_edit.h"
@@ -32,10 +33,11 @@ std::vector<std::string> doubtfulMatches(const SkeletonMap& map, const Skeleton&
   return lines;
 }
 
-SkeletonMap mapFor(const Skeleton& source, const Skeleton& target, const RetargetAssetOptions& options) {
-  if (options.mapJson) return skeletonMapFromJson(*options.mapJson, source, target);
-  if (options.matches) return options.matches->match(source, target, options.unlikeBodies);
-  return matchSkeletons(source, target, options.unlikeBodies);
+SkeletonMap mapFor(const Motion& motion, const Skeleton& target, const RetargetAssetOptions& options) {
+  if (options.mapJson) return skeletonMapFromJson(*options.mapJson, motion.skeleton, target);
+  if (!options.matches) return matchMotion(motion, target, options.unlikeBodies);
+  const std::optional<Pose> pose = poseWithForm(motion);
+  return options.matches->match(motion.skeleton, target, options.unlikeBodies, pose ? &*pose : nullptr);
 }
 
 // Null, with a warning, where the character has a skin whose surface cannot be read: it moves all the same.
@@ -62,7 +64,7 @@ CharacterClips retargetedClips(Asset& asset, const Motion& given, const Retarget
   if (given.clips.empty()) throw Error(ErrorCode::kUnsupported, "holds no motion", given.name);
   const Motion motion = asItRests(given);
   const AssetSkeleton character = animatedSkeleton(asset);
-  const SkeletonMap map = mapFor(motion.skeleton, character.skeleton, options);
+  const SkeletonMap map = mapFor(motion, character.skeleton, options);
   RetargetOptions retarget = options.retarget;
   retarget.characterStands = !isSkeletonAlone(asset);
   if (hasRig(asset)) retarget.skin = bodySkinOf(asset);

@@ -8,6 +8,7 @@
 #include "limber/asset/turn_scene.h"
 #include "limber/core/rotation.h"
 #include "limber/matching/neutral_pose.h"
+#include "limber/matching/rest_form.h"
 #include "limber/skeleton/clip_edit.h"
 
 namespace limber {
@@ -71,7 +72,7 @@ std::optional<Vec3> restsAlong(const Asset& asset) {
 }  // namespace
 
 std::optional<Vec3> standsAlong(const Skeleton& skeleton, const Pose& pose) {
-  if (!isNamedBiped(readAnatomy(skeleton))) return {};
+  if (!hasForm(skeleton, pose) || !isNamedBiped(readAnatomy(skeleton))) return {};
   const SkeletonMap map = matchSkeletons(skeleton, skeleton);
   if (!map.isBiped() || !standsUpright(skeleton, pose, map, MapSide::kTarget)) return {};
   return neutralPose(skeleton, pose, map, MapSide::kTarget, {}).toBody.conjugate() * Vec3::UnitY();

@@ -10,8 +10,8 @@
 
 namespace limber {
 
-// The axis that a person in that pose stands along; none where names of joints tell no person, or where head and
-// feet lie to the same side of the hips.
+// The axis that a person in that pose stands along; none where names of joints tell no person, where the pose
+// has no form (hasForm), or where head and feet lie to the same side of the hips.
 std::optional<Vec3> standsAlong(const Skeleton& skeleton, const Pose& pose);
 
 // What turns one who stands along another axis in rest pose to stand along +Y; none for all others.

@@ -7,6 +7,7 @@
 #include "limber/asset/joint_edit.h"
 #include "limber/asset/node_edit.h"
 #include "limber/ik/limits_json.h"
+#include "limber/matching/rest_form.h"
 #include "limber/session/refuse.h"
 #include "limber/session/session_io.h"
 #include "limber/skeleton/keyframes.h"
@@ -187,7 +188,7 @@ std::optional<ClipSource> carriedSource(ClipSource source, const Skeleton& from,
     source.command.map.clear();
   }
   try {
-    source.map = matchSkeletons(moving, to);
+    source.map = matchMotion(*source.motion, to);
     return source;
   } catch (const Error&) {
     return std::nullopt;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "limber/limbs/body_skin.h"
+#include "limber/matching/rest_form.h"
 #include "limber/pipeline/stand_upright.h"
 #include "limber/retarget/retarget_clip.h"
 #include "limber/session/refuse.h"
@@ -27,6 +28,9 @@ LiveCharacter::LiveCharacter(std::shared_ptr<const RiggedModel> rig, Skeleton so
 void LiveCharacter::begin(const Pose& source) {
   frame_.poses = {source};
   const PoseSequence plain = plainSource_.plain(frame_);
+  if (const std::optional<Pose> pose = poseWithForm(source_, frame_.poses)) {
+    map_ = matchSkeletons(source_, rig_->skeleton(), false, &*pose);
+  }
   RetargetOptions options;
   options.characterStands = true;
   options.skin = makeBodySkin(rig_->skeleton(), rig_->geometry->positions, rig_->weights);

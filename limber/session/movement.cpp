@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "limber/limbs/body_skin.h"
+#include "limber/matching/rest_form.h"
 #include "limber/pipeline/stand_upright.h"
 #include "limber/retarget/retarget_clip.h"
 #include "limber/retarget/retarget_method.h"
@@ -222,7 +223,7 @@ std::optional<ClipSource> sourceOn(const ClipContent& authored, const Skeleton& 
     source.command.map.clear();
   }
   try {
-    source.map = matchSkeletons(moving, skeleton);
+    source.map = matchMotion(*source.motion, skeleton);
     return source;
   } catch (const Error&) {
     return std::nullopt;
@@ -280,7 +281,7 @@ void retargetMotion(Movement& movement, const RiggedModel& rig, const RetargetMo
   const Motion& motion = *source.motion;
   source.clip = clipOfMotion(motion, command.clip);
   if (!(command.reach >= 0 && command.reach <= 1)) refuse("the reach is not between 0 and 1");
-  source.map = command.map.empty() ? matchSkeletons(motion.skeleton, rig.skeleton())
+  source.map = command.map.empty() ? matchMotion(motion, rig.skeleton())
                                    : skeletonMapFromJson(command.map, motion.skeleton, rig.skeleton());
 
   for (std::size_t c = 0; c < movement.clips.size(); ++c) {

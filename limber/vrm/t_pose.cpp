@@ -17,6 +17,7 @@
 #include "limber/core/numbers.h"
 #include "limber/core/rotation.h"
 #include "limber/matching/neutral_pose.h"
+#include "limber/matching/rest_form.h"
 #include "limber/vrm/vrm_bones.h"
 
 namespace limber {
@@ -209,7 +210,9 @@ bool hasPosedBone(const Asset& asset, const AssetSkeleton& rig, std::span<const 
 }  // namespace
 
 TPose tPoseOf(const Skeleton& skeleton, std::span<const Pose> motion, std::span<const HumanoidJoint> bones) {
-  const SkeletonMap map = matchSkeletons(skeleton, skeleton);
+  const std::optional<Pose> pose = poseWithForm(skeleton, motion);
+  const Skeleton read = pose ? restingIn(skeleton, *pose) : skeleton;
+  const SkeletonMap map = matchSkeletons(read, read);
   const Pose resting = uprightPose(skeleton, motion, map, MapSide::kTarget);
   const NeutralPose neutral =
       neutralPose(skeleton, resting, map, MapSide::kTarget, readAnatomy(skeleton, resting).axes);

@@ -76,6 +76,46 @@ inline Skeleton withOtherAxes(Skeleton skeleton) {
   return skeleton;
 }
 
+// A motion together with the skeleton that it moves.
+struct MovedSkeleton {
+  Skeleton skeleton;
+  PoseSequence motion;
+};
+
+// The same motion of a skeleton without rotations at rest, written as programs do that zero their joints' axes: at rest
+// all bones lie along +X, if `mirrored` those of joints called right... along -X; the hips' axes are turned by `hips`.
+inline MovedSkeleton withZeroedAxes(const Skeleton& person, const PoseSequence& motion, bool mirrored,
+                                    const Quat& hips) {
+  std::vector<Vec3> tips(person.jointCount(), Vec3::UnitX());
+  for (Index j = person.jointCount(); j-- > 1;)
+    tips[person.joints[j].parent.value()] = person.joints[j].rest.translation;
+  MovedSkeleton flat{person, motion};
+  std::vector<Quat> axes;
+  for (Index j = 0; j < person.jointCount(); ++j) {
+    const Joint& joint = person.joints[j];
+    const double sign = mirrored && joint.name.starts_with("right") ? -1 : 1;
+    axes.push_back(joint.parent ? shortestRotation(sign * Vec3::UnitX(), tips[j]) : hips);
+    const Quat above = joint.parent ? axes[*joint.parent] : Quat::Identity();
+    Transform& rest = flat.skeleton.joints[j].rest;
+    rest.translation = above.conjugate() * rest.translation;
+    for (Pose& pose : flat.motion.poses) {
+      Transform& local = pose.locals[j];
+      local.translation = above.conjugate() * local.translation;
+      local.rotation = (above.conjugate() * local.rotation * axes[j]).normalized();
+    }
+  }
+  return flat;
+}
+
+// The motion turned about the origin.
+inline PoseSequence turnedMotion(PoseSequence motion, const Quat& turn) {
+  for (Pose& pose : motion.poses) {
+    pose.locals[0].translation = turn * pose.locals[0].translation;
+    pose.locals[0].rotation = turn * pose.locals[0].rotation;
+  }
+  return motion;
+}
+
 inline Skeleton scaled(Skeleton skeleton, double factor) {
   for (Joint& joint : skeleton.joints) joint.rest.translation *= factor;
   return skeleton;
