@@ -38,6 +38,15 @@ SkeletonMap mapFor(const Skeleton& source, const Skeleton& target, const Retarge
   return matchSkeletons(source, target, options.unlikeBodies);
 }
 
+void warnOfDoubts(const SkeletonMap& map, const Motion& motion, const Skeleton& target, Warnings& warnings) {
+  const std::vector<std::string> doubtful = doubtfulMatches(map, motion.skeleton, target);
+  if (doubtful.empty()) return;
+  warnings.add(
+      "doubtful-matches",
+      fmt::format("joints are matched with a confidence below {:g}: look at them, and correct the map", kDoubtful),
+      fmt::format("{}: {}", motion.name, doubtful.front()), doubtful.size());
+}
+
 // Null, with a warning, where the character has a skin whose surface cannot be read: it moves all the same.
 std::shared_ptr<const BodySkin> bodySkinOf(Asset& asset) {
   try {
@@ -63,6 +72,7 @@ CharacterClips retargetedClips(Asset& asset, const Motion& given, const Retarget
   const Motion motion = asItRests(given);
   const AssetSkeleton character = animatedSkeleton(asset);
   const SkeletonMap map = mapFor(motion.skeleton, character.skeleton, options);
+  warnOfDoubts(map, motion, character.skeleton, asset.warnings);
   RetargetOptions retarget = options.retarget;
   retarget.characterStands = !isSkeletonAlone(asset);
   if (hasRig(asset)) retarget.skin = bodySkinOf(asset);
