@@ -8,6 +8,7 @@
 #include "limber/asset/rig_io.h"
 #include "limber/core/error.h"
 #include "limber/limbs/body_skin.h"
+#include "limber/matching/motion_bodies.h"
 #include "limber/motion_mix/planted_feet.h"
 #include "limber/pipeline/stand_upright.h"
 #include "limber/skeleton/clip_edit.h"
@@ -30,6 +31,11 @@ std::vector<std::string> doubtfulMatches(const SkeletonMap& map, const Skeleton&
                                 namesOf(match.target, target)));
   }
   return lines;
+}
+
+// A map names its joints itself.
+Motion bodyOf(const Motion& motion, const RetargetAssetOptions& options) {
+  return options.mapJson && options.body.empty() ? motion : motionOfBody(motion, options.body);
 }
 
 SkeletonMap mapFor(const Skeleton& source, const Skeleton& target, const RetargetAssetOptions& options) {
@@ -69,7 +75,7 @@ CharacterClips retargetedClips(Asset& asset, const Motion& given, const Retarget
   const RetargetMethod& method = findRetargetMethod(options.method);
   if (!canMove(asset)) throw Error(ErrorCode::kUnsupported, "the model has no rig to move", asset.name);
   if (given.clips.empty()) throw Error(ErrorCode::kUnsupported, "holds no motion", given.name);
-  const Motion motion = asItRests(given);
+  const Motion motion = asItRests(bodyOf(given, options));
   const AssetSkeleton character = animatedSkeleton(asset);
   const SkeletonMap map = mapFor(motion.skeleton, character.skeleton, options);
   warnOfDoubts(map, motion, character.skeleton, asset.warnings);
