@@ -540,6 +540,57 @@ TEST_F(Cli, TheSampleFoxWalks) {
   EXPECT_LT(measures.at("jerk_ratio").get<double>(), 1.1);
 }
 
+// Two of them in one file, the second two metres to the left, its joints' names with "Other" before.
+std::string twoPeopleBvh() {
+  const std::string one = personBvh(""), other = personBvh("Other");
+  const std::size_t motion = one.find("MOTION\n"), rows = one.find("Frame Time: 0.1\n") + 16;
+  const std::size_t hierarchy = other.find("ROOT"), otherMotion = other.find("MOTION\n");
+  std::string text = one.substr(0, motion) + other.substr(hierarchy, otherMotion - hierarchy);
+  text += one.substr(motion, rows - motion);
+  std::istringstream left(one.substr(rows)), right(other.substr(other.find("Frame Time: 0.1\n") + 16));
+  for (std::string a, b; std::getline(left, a) && std::getline(right, b);)
+    text.append(a).append(" 200" + b.substr(1)) += "\n";
+  return text;
+}
+
+TEST_F(Cli, OfAMotionOfTwoBodiesOneIsChosen) {
+  put("wave.bvh", personBvh(""));
+  put("two.bvh", twoPeopleBvh());
+  EXPECT_EQ(run({"convert", "two.bvh", "two.glb", "-q"}).code, 0);
+  EXPECT_EQ(run({"sample", "biped", "-o", "biped.glb", "-q"}).code, 0);
+  EXPECT_EQ(run({"rig", "biped.glb", "--template", "humanoid", "-o", "hero.glb", "-q"}).code, 0);
+  ASSERT_EQ(run({"retarget", "hero.glb", "wave.bvh", "-o", "one.glb", "-q"}).code, 0);
+  for (const std::string motion : {"two.bvh", "two.glb"}) {
+    const Result refused = run({"retarget", "hero.glb", motion, "-o", "none.glb"});
+    expectOneLine(refused, 1);
+    EXPECT_THAT(refused.error, AllOf(HasSubstr("holds 2 bodies"), HasSubstr("'Hips' and 'OtherHips'"),
+                                     HasSubstr("--skeleton 'Hips'")));
+    const Result unknown = run({"retarget", "hero.glb", motion, "-o", "none.glb", "--skeleton", "Pelvis"});
+    expectOneLine(unknown, 1);
+    EXPECT_THAT(unknown.error, AllOf(HasSubstr("no joint 'Pelvis'"), HasSubstr("'Hips' and 'OtherHips'")));
+    for (const std::string body : {"OtherHips", "2"}) {
+      const Result done = run({"animate", "hero.glb", motion, "-o", "two_" + body + ".glb", "--skeleton", body});
+      ASSERT_EQ(done.code, 0) << done.error;
+    }
+    EXPECT_EQ(content("two_2.glb"), content("two_OtherHips.glb"));
+    // The second is two metres away, and moves as the first does.
+    const Result measured = run({"evaluate", "motion", "two_2.glb", "--source", "wave.bvh", "--json"});
+    ASSERT_EQ(measured.code, 0) << measured.error;
+    EXPECT_LT(nlohmann::json::parse(measured.out).at("bone_direction_degrees").get<double>(), 5);
+  }
+}
+
+TEST_F(Cli, WhatIsReadIsNamedWhereAFormatIsNot) {
+  put("hero.bvh", personBvh(""));
+  for (const char* motion : {"moves.npy", "moves.pkl"}) {
+    put(motion, "\x80 no motion");
+    const Result refused = run({"retarget", "hero.bvh", motion, "-o", "none.glb"});
+    expectOneLine(refused, 1);
+    EXPECT_THAT(refused.error, AllOf(HasSubstr(motion), HasSubstr(".npz"), HasSubstr("SMPL"), HasSubstr("VRM"),
+                                     HasSubstr("VRMA"), HasSubstr("BVH")));
+  }
+}
+
 TEST_F(Cli, RetargetRefusesWithOneLineAndLeavesNoFile) {
   put("hero.bvh", personBvh(""));
   put("cut.bvh", personBvh("").substr(0, 400));

@@ -97,6 +97,10 @@ void addCrowdOptions(CLI::App& command, const std::shared_ptr<CrowdArguments>& a
       ->check(numberIn(0, 180))
       ->type_name("DEG")
       ->capture_default_str();
+  command
+      .add_option("--skeleton", crowd.retarget.body,
+                  "which body of a motion of several: the name of its root joint, or its number from 1")
+      ->type_name("JOINT");
   command.add_flag("--unlike-bodies", crowd.retarget.unlikeBodies,
                    "let limbs without a partner follow others from front to back: forelegs or wings follow arms");
   command.add_flag("--loop", crowd.edits.loop, "cut each clip to its best loop, where it has one, and join the ends");

@@ -295,6 +295,10 @@ void addOptions(CLI::App& command, const std::shared_ptr<RetargetArguments>& opt
   command.add_option("--save-map", options->saveMapFile, "write that map, to correct and use again")->type_name("FILE");
   command.add_flag("--unlike-bodies", options->retarget.unlikeBodies,
                    "let limbs without a partner follow others from front to back: forelegs or wings follow arms");
+  command
+      .add_option("--skeleton", options->retarget.body,
+                  "which body of a motion of several: the name of its root joint, or its number from 1")
+      ->type_name("JOINT");
   command.add_option("--fps", options->frameRate, "frames a second of the clips (default: each motion's own)")
       ->check(numberIn(1, 1000))
       ->type_name("N");

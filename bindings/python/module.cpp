@@ -394,7 +394,8 @@ constexpr const char* kRetargetHelp =
     R"(Puts a motion (.bvh, .glb, .gltf, .fbx, .dae) onto the rig. Returns the clips that were added, as dictionaries.
 
 method  a name of limber.retargeting_methods()
-solver  how limbs reach: two-bone, fabrik, ...)";
+solver  how limbs reach: two-bone, fabrik, ...
+skeleton  which body of a motion of several: the name of its root joint, or its number from 1)";
 
 // limber.Error(ValueError), with code, where and remedy.
 void raiseErrors(py::module_& module) {
@@ -491,14 +492,16 @@ PYBIND11_MODULE(_limber, module) {
            "own frame.")
       .def(
           "retarget",
-          [](Model& model, const std::filesystem::path& motion, const std::string& method, const std::string& solver) {
+          [](Model& model, const std::filesystem::path& motion, const std::string& method, const std::string& solver,
+             const std::string& skeleton) {
             RetargetAssetOptions options;
             options.method = method;
+            options.body = skeleton;
             options.retarget.solver = solver;
             return model.retarget(motion, options);
           },
           py::arg("motion"), py::arg("method") = "limb-ik", py::kw_only(), py::arg("solver") = RetargetOptions().solver,
-          kRetargetHelp)
+          py::arg("skeleton") = "", kRetargetHelp)
       .def("quality", &Model::quality,
            "How good the rig is, with nothing to compare it with: the figures of limber evaluate model.");
 

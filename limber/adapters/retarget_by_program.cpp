@@ -11,6 +11,7 @@
 #include "limber/asset/clip_io.h"
 #include "limber/asset/motion_io.h"
 #include "limber/core/error.h"
+#include "limber/matching/motion_bodies.h"
 #include "limber/matching/plain_skeleton.h"
 #include "limber/pipeline/stand_upright.h"
 
@@ -43,7 +44,7 @@ Skeleton turnedSkeleton(const Skeleton& skeleton, const Quat& turn) {
 ProgramClips retargetByProgram(Asset& asset, const Motion& given, const Adapter& adapter,
                                const RetargetAssetOptions& options, Progress& progress) {
   checkCanRetarget(asset, given, adapter);
-  const Motion motion = standing(given);
+  const Motion motion = standing(motionOfBody(given, options.body));
   const AssetSkeleton character = animatedSkeleton(asset);
   const PlainSkeleton plain(character.skeleton);
   const Skeleton handed = plainlyNamed(turnedSkeleton(plain.skeleton(), options.turn));

@@ -75,7 +75,7 @@ const Format& formatOf(ByteSpan bytes, std::string_view name) {
   if (const Format* format = extension.empty() ? nullptr : formatNamed(extension.substr(1))) return *format;
   if (looksLikeObj(bytes)) return *formatNamed("obj");
   throw Error(ErrorCode::kUnsupported, "is of a format that limber does not read", {},
-              "it reads GLB, glTF, OBJ, PLY, STL, OFF, FBX, DAE and BVH");
+              "it reads GLB, glTF, VRM, FBX, DAE, OBJ, PLY, STL and OFF, and motions as BVH, VRMA and, of SMPL, .npz");
 }
 
 // What a file's own lengths and directions are in metres and +Y up.

@@ -52,7 +52,6 @@ void RootPlacer::addLoose(const LooseJoint& joint) {
   loose.carrier = joint.carrier;
   loose.offset = from * (neutral.restPositions[joint.joint] - neutral.restPositions[joint.carrier]);
   if (!joint.matched) loose.turn = from * neutral.toBody * decompose(rest[joint.joint]).rotation;
-  turnsLoose_ = turnsLoose_ || !joint.matched;
 }
 
 void RootPlacer::findCarrierOfLegs() {
@@ -226,7 +225,6 @@ Index RootPlacer::carrierOf(Index joint) const {
 }
 
 void RootPlacer::settleLoose(Pose& target, BodyFrame& frame) const {
-  if (loose_.empty()) return;
   const BodyKinematics& kinematics = setup_.targetKinematics;
   for (const Loose& loose : loose_) {
     const Quat& carrier = frame.rotations[loose.carrier];
@@ -235,12 +233,8 @@ void RootPlacer::settleLoose(Pose& target, BodyFrame& frame) const {
     const Vec3 way = toParent * Vec3(there - kinematics.parentPosition(loose.joint, frame));
     target.locals[loose.joint].translation = way / kinematics.unit(loose.joint);
     if (loose.turn) target.locals[loose.joint].rotation = (toParent * carrier * *loose.turn).normalized();
-    frame.positions[loose.joint] = there;
-  }
-  if (turnsLoose_) {
-    kinematics.globals(target, frame);
-  } else {
-    kinematics.place(target, frame);
+    // At once: what is below may carry the next one, or be loose itself.
+    kinematics.globalsBelow(loose.joint, target, frame);
   }
 }
 

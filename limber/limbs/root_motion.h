@@ -74,7 +74,6 @@ class RootPlacer {
   std::vector<Index> turnsAlong_;      // joints below it that turn with it
   std::vector<Index> pelvisChildren_;  // what hangs on these and on the pelvis
   std::vector<Loose> loose_;
-  bool turnsLoose_ = false;
   std::vector<bool> carried_;  // of no people, #matches: whether nothing above it is matched, in the source either
   std::vector<Index> moved_;
 };

@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
 #include "limber/matching/testing/test_motion.h"
 #include "limber/retarget/retarget_clip.h"
 
@@ -106,6 +111,38 @@ TEST(RootMotion, WhatNothingMatchesGoesAndTurnsWithTheFootThatItIsAt) {
     for (const Pose& pose : result.poses) {
       const std::vector<Affine> globals = poseGlobals(clawed, pose);
       EXPECT_LT((globals[foot].inverse() * globals[at].matrix() - rest.matrix()).norm(), 1e-6);
+    }
+  }
+}
+
+// Controls of inverse kinematics below roots of their own, one below another that follows the other hand, one on the
+// toes of a foot that itself is on the ground's joint.
+TEST(RootMotion, ControlsAreWhereTheJointsAreThatTheyRestOn) {
+  const Skeleton person = practiceHumanoid();
+  Skeleton rigged = limber::testing::onTheGround(person, {"leftFoot"});
+  const auto at = [&](const std::string& joint) { return restGlobals(rigged)[rigged.find(joint).value()]; };
+  const std::vector<std::array<std::string, 3>> controls = {{"ik_gun", "ground", "rightHand"},
+                                                            {"ik_hand_l", "ik_gun", "leftHand"},
+                                                            {"ik_toes", "ground", "leftToes"},
+                                                            {"ik_foot_root", "ground", "ground"},
+                                                            {"ik_foot_r", "ik_foot_root", "rightFoot"}};
+  for (const auto& [name, parent, joint] : controls)
+    limber::testing::addJoint(rigged, name, parent, at(joint).translation() - at(parent).translation());
+  // Each with axes of its own, so that rotations show, too.
+  rigged = limber::testing::withOtherAxes(rigged);
+  const PoseSequence motion = limber::testing::walk(person);
+  const RetargetSetup setup(person, rigged, matchSkeletons(person, rigged), {}, &motion);
+  for (const char* method : {"copy", "aligned", "limb-ik", "spacetime"}) {
+    const PoseSequence result = retargetFrames(findRetargetMethod(method), setup, motion);
+    for (const auto& [name, parent, joint] : controls) {
+      const Index control = rigged.find(name).value(), carrier = rigged.find(joint).value();
+      const Affine rest = at(joint).inverse() * at(name);
+      double most = 0;
+      for (const Pose& pose : result.poses) {
+        const std::vector<Affine> globals = poseGlobals(rigged, pose);
+        most = std::max(most, (globals[carrier].inverse() * globals[control].matrix() - rest.matrix()).norm());
+      }
+      EXPECT_LT(most, 1e-6) << method << ", " << name;
     }
   }
 }

@@ -1,6 +1,7 @@
 #include "limber/matching/loose_joints.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "limber/skeleton/chain.h"
 
@@ -8,7 +9,10 @@ namespace limber {
 
 namespace {
 
-constexpr double kNear = 0.1;  // of the extent of all joints
+// Fractions of the extent of the body's joints. Controls rest at the very position of their joints, but for rounding
+// (1e-6 in the files seen); fingers begin 0.02 from the wrist.
+constexpr double kSamePosition = 0.005;
+constexpr double kNear = 0.1;
 
 class LooseFinder {
  public:
@@ -17,7 +21,10 @@ class LooseFinder {
         map_(map),
         side_(side),
         rest_(rest),
-        hips_(jointsOf(*map.find(body_part::kPelvis)).front()) {}
+        hips_(jointsOf(*map.find(body_part::kPelvis)).front()),
+        matched_(skeleton.jointCount()) {
+    for (const Index joint : matchedJoints(map, side)) matched_[joint] = true;
+  }
 
   std::vector<LooseJoint> find() {
     addMatched();
@@ -63,23 +70,41 @@ class LooseFinder {
     return nullptr;
   }
 
+  // Controls of inverse kinematics, such as Unreal's ik_foot_l, rest on the joint that they follow, wherever in their
+  // own tree they are. The top of a tree that rests on none of the body stays with a parent that it rests on.
   void addOthers() {
-    std::vector<Index> body, others;
+    std::vector<Index> body;
+    Box box;
     for (Index j = 0; j < skeleton_.jointCount(); ++j) {
-      if (isOfBody(j)) {
-        body.push_back(j);
-      } else if (!carriesBody(j) && (!skeleton_.joints[j].parent || carriesBody(*skeleton_.joints[j].parent))) {
-        others.push_back(j);
+      if (!isOfBody(j)) continue;
+      body.push_back(j);
+      box.add(rest_[j]);
+    }
+    const double same = kSamePosition * box.longestSide(), near = kNear * box.longestSide();
+    for (Index j = 0; j < skeleton_.jointCount(); ++j) {
+      if (isOfBody(j) || carriesBody(j)) continue;
+      const std::optional<Index>& parent = skeleton_.joints[j].parent;
+      const bool isTop = !parent || carriesBody(*parent);
+      if (const std::optional<Index> carrier = restsOn(j, body, same)) {
+        loose_.push_back({j, *carrier, false});
+      } else if (isTop && !(parent && distance(j, *parent) <= same)) {
+        const Index nearest = *std::min_element(body.begin(), body.end(),
+                                                [&](Index a, Index b) { return distance(j, a) < distance(j, b); });
+        if (distance(j, nearest) < near) loose_.push_back({j, nearest, false});
       }
     }
-    Box box;
-    for (const Index j : body) box.add(rest_[j]);
-    for (const Index other : others) {
-      const auto away = [&](Index j) { return (rest_[j] - rest_[other]).norm(); };
-      const Index carrier =
-          *std::min_element(body.begin(), body.end(), [&](Index a, Index b) { return away(a) < away(b); });
-      if (away(carrier) < kNear * box.longestSide()) loose_.push_back({other, carrier, false});
+  }
+
+  double distance(Index a, Index b) const { return (rest_[a] - rest_[b]).norm(); }
+
+  // Of several a matched one: a hand, not the end of the forearm or its twist joint. Then the nearest.
+  std::optional<Index> restsOn(Index joint, std::span<const Index> body, double same) const {
+    std::optional<Index> best;
+    const auto rank = [&](Index j) { return std::pair(!matched_[j], distance(joint, j)); };
+    for (const Index j : body) {
+      if (distance(joint, j) <= same && (!best || rank(j) < rank(*best))) best = j;
     }
+    return best;
   }
 
   bool isOfBody(Index joint) const {
@@ -101,6 +126,7 @@ class LooseFinder {
   MapSide side_;
   std::span<const Vec3> rest_;
   Index hips_;
+  std::vector<bool> matched_;  // #J
   std::vector<LooseJoint> loose_;
 };
 

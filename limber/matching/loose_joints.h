@@ -14,9 +14,11 @@ struct LooseJoint {
   bool matched = true;           // else nothing turns it, and it turns with its carrier
 };
 
-// Joints that play a part of the body ride on the part above; others, with what hangs on them, on the joint of the body
-// that is nearest in rest pose, if there is one near. Of a map with hips; carriers come before what rides on them.
-// `rest` are #J global positions.
+// Joints that play a part of the body ride on the part above. Of others each that rests at the position of a joint of
+// the body rides on that one, at any depth of its tree (ik_hand_r below ik_hand_gun); else the top of their tree, with
+// what is below it, rides on the joint of the body that is nearest in rest pose, if there is one near, unless it rests
+// at the position of its parent. Of a map with hips; carriers come before what rides on them, and parents before
+// children. `rest` are #J global positions.
 std::vector<LooseJoint> looseJoints(const Skeleton& skeleton, const SkeletonMap& map, MapSide side,
                                     std::span<const Vec3> rest);
 

@@ -49,6 +49,18 @@ MatchedBy evidenceOf(const Part& one, const Part& other) {
   return one.evidence == Evidence::kForm || other.evidence == Evidence::kForm ? MatchedBy::kShape : MatchedBy::kName;
 }
 
+// "left hind leg", "hind legs" of both; numbered from the head on where there are more than two pairs.
+std::string labelOfWhole(const Anatomy& anatomy, const BodyPart& part, bool both) {
+  const bool isOfTwo = (part.kind == PartKind::kLeg || part.kind == PartKind::kArm) && anatomy.pairsOf(part.kind) == 2;
+  std::string label;
+  if (!both && part.side != Side::kCenter) label.append(nameOf(part.side)).append(" ");
+  if (isOfTwo) label += part.pair == 0 ? "front " : "hind ";
+  label.append(nameOf(part.kind)).append(both ? "s" : "");
+  if (!isOfTwo && part.kind > PartKind::kTail && anatomy.pairsOf(part.kind) > 1)
+    label += " " + std::to_string(part.pair + 1);
+  return label;
+}
+
 class Matcher {
  public:
   Matcher(const Skeleton& source, const Skeleton& target, bool unlikeBodies, const Pose* sourcePose)
@@ -527,7 +539,8 @@ class Matcher {
     }
   }
 
-  [[noreturn]] void refuse() const {
+  [[noreturn]] void refuse() {
+    listUnmatched();
     throw KnownError(
         ErrorKind::kUnlikeBodies,
         {ErrorCode::kUnsupported,
@@ -535,13 +548,52 @@ class Matcher {
              "the motion's skeleton of {} and the character's of {} have too little in common to be matched: {}",
              counted(source_.jointCount(), "joint"), target_.jointCount(), whatDiffers()),
          "",
-         unlikeBodies_ ? "say in a map which joint follows which, as docs/retargeting.md tells"
-                       : "--unlike-bodies lets limbs follow others, and a map says which joint follows which, as "
-                         "docs/retargeting.md tells"},
+         unlikeBodiesMatch() ? "--unlike-bodies lets limbs follow others"
+                             : "--map FILE says which joint follows which, as docs/retargeting.md tells"},
         {{"source", fmt::to_string(source_.jointCount())}, {"target", fmt::to_string(target_.jointCount())}});
   }
 
+  bool unlikeBodiesMatch() const {
+    if (unlikeBodies_) return false;
+    try {
+      Matcher(source_, target_, true).match();
+    } catch (const Error&) {
+      return false;
+    }
+    return true;
+  }
+
+  // "left hind leg, arms and tail": the larger parts of one body that have no partner in the other.
+  std::string unmatchedParts(bool ofTarget) const {
+    const Anatomy& anatomy = (ofTarget ? to_ : from_).anatomy;
+    const auto isUnmatched = [&](const BodyPart& part) {
+      return std::any_of(map_.left.begin(), map_.left.end(),
+                         [&](const UnmatchedPart& each) { return each.ofTarget == ofTarget && each.part == part; });
+    };
+    std::vector<std::string> labels;
+    for (const UnmatchedPart& each : map_.left) {
+      if (each.ofTarget != ofTarget || each.part.kind > PartKind::kFin) continue;  // fingers and smaller
+      BodyPart mirrored = each.part;
+      mirrored.side = opposite(each.part.side);
+      const bool isPair = each.part.side != Side::kCenter && isUnmatched(mirrored);
+      if (isPair && each.part.side == Side::kRight) continue;
+      labels.push_back(labelOfWhole(anatomy, each.part, isPair));
+    }
+    std::string text;
+    for (std::size_t i = 0; i < labels.size(); ++i)
+      text += (i == 0 ? "" : i + 1 < labels.size() ? ", " : " and ") + labels[i];
+    return text;
+  }
+
   std::string whatDiffers() const {
+    const std::string source = unmatchedParts(false), target = unmatchedParts(true);
+    if (source.empty() && target.empty()) return whatIsSeen();
+    const std::string ofSource = fmt::format("nothing in the character is like the motion's {}", source),
+                      ofTarget = fmt::format("nothing in the motion is like the character's {}", target);
+    return source.empty() ? ofTarget : target.empty() ? ofSource : ofSource + ", and " + ofTarget;
+  }
+
+  std::string whatIsSeen() const {
     const auto seen = [](const Anatomy& anatomy) {
       std::string text;
       for (const PartKind kind : {PartKind::kLeg, PartKind::kArm, PartKind::kWing, PartKind::kFin}) {

@@ -8,6 +8,7 @@
 #include "limber/asset/rig_io.h"
 #include "limber/core/error.h"
 #include "limber/limbs/body_skin.h"
+#include "limber/matching/motion_bodies.h"
 #include "limber/matching/rest_form.h"
 #include "limber/motion_mix/planted_feet.h"
 #include "limber/pipeline/stand_upright.h"
@@ -33,11 +34,25 @@ std::vector<std::string> doubtfulMatches(const SkeletonMap& map, const Skeleton&
   return lines;
 }
 
+// A map names its joints itself.
+Motion bodyOf(const Motion& motion, const RetargetAssetOptions& options) {
+  return options.mapJson && options.body.empty() ? motion : motionOfBody(motion, options.body);
+}
+
 SkeletonMap mapFor(const Motion& motion, const Skeleton& target, const RetargetAssetOptions& options) {
   if (options.mapJson) return skeletonMapFromJson(*options.mapJson, motion.skeleton, target);
   if (!options.matches) return matchMotion(motion, target, options.unlikeBodies);
   const std::optional<Pose> pose = poseWithForm(motion);
   return options.matches->match(motion.skeleton, target, options.unlikeBodies, pose ? &*pose : nullptr);
+}
+
+void warnOfDoubts(const SkeletonMap& map, const Motion& motion, const Skeleton& target, Warnings& warnings) {
+  const std::vector<std::string> doubtful = doubtfulMatches(map, motion.skeleton, target);
+  if (doubtful.empty()) return;
+  warnings.add(
+      "doubtful-matches",
+      fmt::format("joints are matched with a confidence below {:g}: look at them, and correct the map", kDoubtful),
+      fmt::format("{}: {}", motion.name, doubtful.front()), doubtful.size());
 }
 
 // Null, with a warning, where the character has a skin whose surface cannot be read: it moves all the same.
@@ -62,9 +77,10 @@ CharacterClips retargetedClips(Asset& asset, const Motion& given, const Retarget
   const RetargetMethod& method = findRetargetMethod(options.method);
   if (!canMove(asset)) throw Error(ErrorCode::kUnsupported, "the model has no rig to move", asset.name);
   if (given.clips.empty()) throw Error(ErrorCode::kUnsupported, "holds no motion", given.name);
-  const Motion motion = asItRests(given);
+  const Motion motion = asItRests(bodyOf(given, options));
   const AssetSkeleton character = animatedSkeleton(asset);
   const SkeletonMap map = mapFor(motion, character.skeleton, options);
+  warnOfDoubts(map, motion, character.skeleton, asset.warnings);
   RetargetOptions retarget = options.retarget;
   retarget.characterStands = !isSkeletonAlone(asset);
   if (hasRig(asset)) retarget.skin = bodySkinOf(asset);

@@ -1,0 +1,96 @@
+#include "limber/pipeline/retarget_asset.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "limber/asset/motion_io.h"
+#include "limber/matching/testing/test_motion.h"
+
+namespace limber {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+// Two people two metres apart who walk, the joints of the second with "_2" behind their names.
+Motion twoPeople() {
+  const Skeleton person = practiceHumanoid();
+  Motion motion;
+  motion.name = "two";
+  motion.skeleton = person;
+  for (Joint joint : person.joints) {
+    joint.name += "_2";
+    if (joint.parent)
+      joint.parent = *joint.parent + person.jointCount();
+    else
+      joint.rest.translation.x() += 2;
+    motion.skeleton.joints.push_back(joint);
+  }
+  PoseSequence frames = limber::testing::walk(person, 30);
+  for (Pose& pose : frames.poses) {
+    const Pose one = pose;
+    pose.locals.insert(pose.locals.end(), one.locals.begin(), one.locals.end());
+    pose.locals[person.jointCount()].translation.x() += 2;
+  }
+  motion.clips.push_back(clipOf(motion.skeleton, frames, "walk"));
+  return motion;
+}
+
+// Each on a skin of its own.
+Asset inTwoSkins(const Motion& motion) {
+  Asset asset = motionAsset(motion);
+  gltf::Skin& first = asset.document.skins.front();
+  first.inverseBindMatrices.reset();
+  first.skeleton.reset();
+  gltf::Skin second = first;
+  const auto half = static_cast<std::ptrdiff_t>(first.joints.size() / 2);
+  second.joints.erase(second.joints.begin(), second.joints.begin() + half);
+  first.joints.erase(first.joints.begin() + half, first.joints.end());
+  asset.document.skins.push_back(std::move(second));
+  return asset;
+}
+
+TEST(RetargetAsset, AMotionInTwoSkinsIsOfTwoBodies) {
+  const Motion motion = motionOf(inTwoSkins(twoPeople()));
+  Motion hero;
+  hero.skeleton = limber::testing::oddlyBuilt();
+  Asset character = motionAsset(hero);
+  try {
+    retargetOnto(character, motion, {});
+    FAIL() << "which of both?";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::kUnsupported);
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("holds 2 bodies"), HasSubstr("'hips' and 'hips_2'")));
+  }
+  RetargetAssetOptions second;
+  second.body = "hips_2";
+  const std::vector<RetargetedClip> clips = retargetOnto(character, motion, second);
+  ASSERT_EQ(clips.size(), 1u);
+  EXPECT_TRUE(clips[0].map.isBiped());
+  EXPECT_THAT(clips[0].mapJson, HasSubstr("hips_2"));
+}
+
+// By form alone nobody knows whether a finger's last joint is its tip; of the same body everything is known.
+TEST(RetargetAsset, DoubtfulMatchesAreAWarning) {
+  const Skeleton person = practiceHumanoid();
+  Motion motion;
+  motion.name = "walk";
+  motion.clips.push_back(clipOf(person, limber::testing::walk(person, 30), "walk"));
+  for (const bool isSame : {true, false}) {
+    motion.skeleton = isSame ? person : limber::testing::nameless(person);
+    Motion hero;
+    hero.skeleton = isSame ? person : limber::testing::oddlyBuilt();
+    Asset character = motionAsset(hero);
+    const std::vector<RetargetedClip> clips = retargetOnto(character, motion, {});
+    ASSERT_EQ(clips.size(), 1u);
+    EXPECT_EQ(clips[0].doubtful.empty(), isSame);
+    std::size_t warned = 0;
+    for (const Warning& warning : character.warnings.items()) {
+      if (warning.kind == "doubtful-matches") warned += warning.count;
+    }
+    EXPECT_EQ(warned, clips[0].doubtful.size());
+  }
+}
+
+}  // namespace
+}  // namespace limber
