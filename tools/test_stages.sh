@@ -26,6 +26,16 @@ stage() {
   echo "   $((SECONDS - started)) s"
 }
 
+# minutes_left_for <minutes> <what>: whether stages that take so long on two processors with nothing compiled before may
+# still begin within LIMBER_TEST_MINUTES, where that is set; else they are skipped, and the run says so.
+minutes_left_for() {
+  [ -n "${LIMBER_TEST_MINUTES:-}" ] || return 0
+  [ $((SECONDS / 60 + $1)) -gt "$LIMBER_TEST_MINUTES" ] || return 0
+  echo "== $2: skipped, $((SECONDS / 60)) of $LIMBER_TEST_MINUTES minutes are used and they take up to $1"
+  add_counts 0 0 1
+  return 1
+}
+
 # stages_at_once: of its input, a line each: a function without arguments, then the title of its stage. For stages that
 # keep one processor busy and write into folders of their own: as many at a time as there are processors, told in their
 # order. Where one fails all others come to their end before it sums up and exits.
@@ -599,11 +609,16 @@ packages_on_bare_debian packages, installed on a Debian with nothing on it
 npm_package npm package
 documentation_site documentation as a site
 STAGES
-  stage "add-on in Blender" blender_addon
+  if minutes_left_for 5 "the add-on in Blender"; then stage "add-on in Blender" blender_addon; fi
+  if minutes_left_for 40 "the tests under sanitizers and the fuzz targets"; then sanitized_stages "$slow"; fi
+}
+
+# What is tried under sanitizers beside all else; ./dev test --sanitize has all of it.
+sanitized_stages() {
   stage "sanitizer build, clang++ with warnings as errors" build_sanitize
   sanitizer_options
-  stage "unit tests under sanitizers" unit_tests sanitize "$slow"
-  # All other models, and templates, take minutes there: ./dev test --sanitize has them.
+  stage "unit tests under sanitizers" unit_tests sanitize "$1"
+  # All other models, and templates, take minutes there.
   LIMBER_MATRIX_HANDLES=10 LIMBER_MATRIX_FRAMES=60 stage "the project's own samples at 10 handles under sanitizers" \
     model_tests sanitize '^(?!.*Samples)|Template|MatchedByTheirForm'
   stage "fuzz targets, a few seconds each" fuzz_each_target 5

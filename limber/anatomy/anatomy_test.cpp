@@ -147,9 +147,17 @@ TEST(Anatomy, ADog) {
   expectAnimalReadRight(dog, dog.skeleton);
 }
 
+// A lone joint ahead of the head may be a snout or a jaw: form does not tell.
 TEST(Anatomy, ADogByItsForm) {
-  const MadeBody dog = limber::testing::dog();
-  expectAnimalReadRight(dog, nameless(dog.skeleton));
+  MadeBody dog = limber::testing::dog();
+  const Index jaw = dog.skeleton.find("Jaw").value();
+  const Skeleton unnamed = nameless(dog.skeleton);
+  const Anatomy anatomy = readAnatomy(unnamed);
+  ASSERT_TRUE(anatomy.partOf[jaw]);
+  const PartKind kind = anatomy.parts[*anatomy.partOf[jaw]].kind;
+  EXPECT_TRUE(kind == PartKind::kJaw || kind == PartKind::kHead) << nameOf(kind);
+  dog.parts[jaw].kind = kind;
+  expectAnimalReadRight(dog, unnamed);
 }
 
 TEST(Anatomy, ACrow) {
@@ -335,6 +343,53 @@ Skeleton manyJoints(int count, const auto& parentOf, const auto& offsetOf) {
     joint.rest.translation = offsetOf(i);
   }
   return skeleton;
+}
+
+// Joints in the plane of symmetry are nobody's, whatever one side has that the other lacks.
+TEST(Anatomy, ABodyThatIsNotAlikeOnBothSidesHasOneNeckAndOneHead) {
+  for (const bool named : {true, false}) {
+    MadeBody body = limber::testing::personWith(limber::testing::NameHabit::kMixamo);
+    for (int finger = 0; finger < 5; ++finger) {
+      limber::testing::addChain(body, "mixamorig:RightHandFinger" + std::to_string(finger), 3, "mixamorig:RightHand",
+                                {-0.76, 1.4, 0.05 - 0.025 * finger}, {-0.03, 0, 0},
+                                {PartKind::kFinger, Side::kRight, static_cast<Index>(finger), Segment::kWhole, 0});
+    }
+    const Skeleton skeleton = named ? body.skeleton : nameless(body.skeleton);
+    const Anatomy anatomy = readAnatomy(skeleton);
+    for (const PartKind kind : {PartKind::kTrunk, PartKind::kNeck, PartKind::kHead}) {
+      ASSERT_TRUE(anatomy.find(kind)) << nameOf(kind);
+      EXPECT_FALSE(anatomy.find(kind, Side::kRight)) << nameOf(kind);
+      EXPECT_FALSE(anatomy.find(kind, Side::kLeft)) << nameOf(kind);
+    }
+    for (const Side side : kSides) EXPECT_TRUE(anatomy.find(PartKind::kArm, side));
+  }
+}
+
+// Without any name: what hangs beside the legs is no further pair of these, and breasts are no arms.
+TEST(Anatomy, SkirtsStrapsAndBreastsAreNoLimbs) {
+  for (const int kind : {0, 1, 2}) {
+    MadeBody body = limber::testing::personWith(limber::testing::NameHabit::kVrm);
+    const BodyPart other{PartKind::kOther, Side::kCenter, 0, Segment::kWhole, 0};
+    for (const double x : {1.0, -1.0}) {
+      const std::string side = x > 0 ? "_L_" : "_R_";
+      if (kind == 0) {
+        limber::testing::addChain(body, "ring" + side, 3, "hips", {0.1 * x, 0.93, 0.09}, {0, -0.13, 0}, other);
+        limber::testing::addChain(body, "back" + side, 3, "hips", {0.1 * x, 0.93, -0.09}, {0, -0.13, 0}, other);
+      } else if (kind == 1) {
+        limber::testing::addChain(body, "strap" + side, 3, "hips", {0.13 * x, 0.93, 0.02}, {0, -0.15, 0}, other);
+      } else {
+        limber::testing::addChain(body, "b" + side, 2, "upperChest", {0.08 * x, 1.28, 0.1}, {0, 0.01, 0.04}, other);
+      }
+    }
+    const Anatomy anatomy = readAnatomy(nameless(body.skeleton));
+    EXPECT_EQ(anatomy.pairsOf(PartKind::kLeg), 1u) << kind;
+    EXPECT_EQ(anatomy.pairsOf(PartKind::kArm), 1u) << kind;
+    for (const Side side : kSides) {
+      const Part* leg = anatomy.find(PartKind::kLeg, side);
+      ASSERT_TRUE(leg && leg->end) << kind;
+      EXPECT_EQ(body.parts[*leg->end], body_part::leg(side, Segment::kEnd)) << kind;
+    }
+  }
 }
 
 // Neither depth nor breadth stops the reading.

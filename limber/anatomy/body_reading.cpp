@@ -103,14 +103,16 @@ std::vector<std::optional<NamedPartner>> partnersOf(const Skeleton& skeleton, st
   return partners;
 }
 
-// Positive where most declared bones of the side that `lateral` points to are left ones, negative where most are right
-// ones, 0 where no pair is declared.
-int declaredLeft(const HalfBody& body, std::span<const std::optional<NamedRole>> declared) {
+// Positive where most bones of the side that `lateral` points to are left ones as the file declares them, negative
+// where most are right ones, 0 where no pair is declared. The sides of a convention's names are evidence, no more: a
+// model that was mirrored has the names of before.
+int declaredLeft(const Skeleton& skeleton, const HalfBody& body, std::span<const std::optional<NamedRole>> declared) {
   int votes = 0;
   for (const HalfJoint& half : body.joints) {
     if (!half.partner) continue;
     for (const auto& [joint, sign] : {std::pair(half.joint, 1), std::pair(*half.partner, -1)}) {
-      if (!declared[joint] || declared[joint]->side == Side::kCenter) continue;
+      if (skeleton.joints[joint].declaredBone.empty() || !declared[joint]) continue;
+      if (declared[joint]->side == Side::kCenter) continue;
       votes += declared[joint]->side == Side::kLeft ? sign : -sign;
     }
   }
@@ -131,7 +133,7 @@ BodyReading::BodyReading(const Skeleton& read, const Pose& pose, bool names, boo
                     names ? partnersOf(skeleton, words, convention) : std::vector<std::optional<NamedPartner>>())),
       measures(body, words),
       guesses(guessesFor(body.lateral)) {
-  const int left = body.sidesByName ? 1 : declaredLeft(body, declared);
+  const int left = body.sidesByName ? 1 : declaredLeft(skeleton, body, declared);
   std::erase_if(guesses, [&](const Axes& guess) { return left * guess.left().dot(body.lateral) < 0; });
   if (body.hasPairs) return;
   const std::vector<Axes> across = guessesFor(Vec3::UnitZ());

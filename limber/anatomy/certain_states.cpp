@@ -80,10 +80,12 @@ class Declared {
     // What a limb has beyond its declared joints, where none of its side is declared to be that.
     const PartState state = *stateAt(*above);
     const PartKind kind = kindOf(state);
-    if (kind == PartKind::kLeg || kind == PartKind::kArm) mask |= limbStatesAfter(state) & ~ofSide_[sideIndex(*above)];
-    const bool hasDigits = kind == PartKind::kFinger || state == PartState::kLegEnd || state == PartState::kLegToes ||
-                           (state == PartState::kArmEnd && !has(PartState::kFinger));
-    if (!hasDigits) mask &= ~bit(PartState::kFinger);
+    const bool isLimb = kind == PartKind::kLeg || kind == PartKind::kArm;
+    const std::uint32_t left = isLimb ? limbStatesAfter(state) & ~ofSide_[sideIndex(*above)] : 0;
+    mask |= left;
+    // Digits are children of hands and feet, and of digits.
+    const std::uint32_t ends = bit(PartState::kArmEnd) | bit(PartState::kLegEnd) | bit(PartState::kLegToes);
+    if (kind != PartKind::kFinger && ((bit(state) | left) & ends) == 0) mask &= ~bit(PartState::kFinger);
     return mask;
   }
 

@@ -425,17 +425,30 @@ class PartMaker {
     if (thumbLike(group.back()) > thumbLike(group.front())) std::reverse(group.begin(), group.end());
   }
 
+  // Those without a name take the numbers that are left, in their order. False where no finger has a name, or two have
+  // the same.
   bool numberFingersByName(const std::vector<std::size_t>& group) {
-    std::vector<Index> named;
+    std::vector<std::optional<Index>> named;
+    std::vector<Index> taken;
     for (const std::size_t p : group) {
       std::optional<Index> finger;
       for (const Index joint : parts_[p].joints) {
         if (!finger) finger = fingerOfWord(reading_.words[joint].word);
       }
-      if (!finger || std::find(named.begin(), named.end(), *finger) != named.end()) return false;
-      named.push_back(*finger);
+      if (finger && std::find(taken.begin(), taken.end(), *finger) != taken.end()) return false;
+      if (finger) taken.push_back(*finger);
+      named.push_back(finger);
     }
-    for (std::size_t i = 0; i < group.size(); ++i) parts_[group[i]].pair = named[i];
+    if (taken.empty()) return false;
+    Index next = 0;
+    for (std::size_t i = 0; i < group.size(); ++i) {
+      while (!named[i] && std::find(taken.begin(), taken.end(), next) != taken.end()) ++next;
+      Part& finger = parts_[group[i]];
+      finger.pair = named[i].value_or(next);
+      if (named[i]) continue;
+      taken.push_back(next);
+      finger.confidence = std::min(finger.confidence, kSomeFingers);
+    }
     return true;
   }
 

@@ -227,12 +227,17 @@ void turn(LabelledSkeleton& body, Random& random) {
   body.axes.front = whole * body.axes.front;
 }
 
-// Bones of both sides alike.
+// Bones of both sides alike; now and then what only some bodies have is several times as long or as short.
 void stretch(LabelledSkeleton& body, Random& random) {
+  constexpr std::array kVaries = {PartKind::kWing, PartKind::kTail, PartKind::kNeck, PartKind::kFin, PartKind::kEar};
+  const PartKind varied = random.below(3) == 0 ? kVaries[random.below(kVaries.size())] : PartKind::kOther;
+  const double variation = std::exp(0.9 * random.normal());
   const JointTree tree(body.skeleton);
   const std::vector<Vec3> positions = restPositions(body.skeleton);
   for (const HalfJoint& half : foldBody(tree, positions).joints) {
-    const double factor = std::exp(0.15 * random.normal());
+    const PartKind kind = kindOf(body.labels[half.joint].state);
+    const double factor =
+        std::exp(0.15 * random.normal()) * (kind == varied && kind != PartKind::kOther ? variation : 1);
     if (!body.skeleton.joints[half.joint].parent) continue;
     body.skeleton.joints[half.joint].rest.translation *= factor;
     if (half.partner) body.skeleton.joints[*half.partner].rest.translation *= factor;

@@ -556,7 +556,7 @@ class Matcher {
   bool unlikeBodiesMatch() const {
     if (unlikeBodies_) return false;
     try {
-      Matcher(source_, target_, true).match();
+      Matcher(source_, target_, true, nullptr).match();  // `source_` rests in the pose already
     } catch (const Error&) {
       return false;
     }
