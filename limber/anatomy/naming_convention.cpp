@@ -93,6 +93,11 @@ bool isSided(std::string_view pattern) {
   return pattern.find('@') != std::string_view::npos || pattern.find('%') != std::string_view::npos;
 }
 
+// Of the convention's own files, not of variants.
+bool isOwn(std::string_view pattern) {
+  return !pattern.starts_with('~');
+}
+
 // A pattern written out: for one side, with a number or "#" for any, and with or without what stands in brackets.
 std::string writtenOut(const NamingConvention& convention, std::string_view pattern, Side side,
                        std::optional<std::size_t> number, bool withBrackets) {
@@ -102,7 +107,7 @@ std::string writtenOut(const NamingConvention& convention, std::string_view patt
     const char c = pattern[i];
     if (c == '[' || c == ']') {
       inBrackets = c == '[';
-    } else if (inBrackets && !withBrackets) {
+    } else if ((inBrackets && !withBrackets) || (i == 0 && (c == '~' || c == '='))) {
       continue;
     } else if (c == '@' || c == '%') {
       const auto& sides = c == '@' ? convention.sides : convention.otherSides;
@@ -119,6 +124,14 @@ std::string writtenOut(const NamingConvention& convention, std::string_view patt
     }
   }
   return name;
+}
+
+// As the convention's own files have it; `index` is that of the joint among those of the pattern.
+std::string ownName(const NamingConvention& convention, std::string_view pattern, Side side, std::size_t index) {
+  const bool bracketed = pattern.find('[') != std::string_view::npos;
+  const std::string_view prefix = pattern.starts_with('=') ? "" : convention.prefix;
+  return std::string(prefix) +
+         writtenOut(convention, pattern, side, bracketed ? index : index + 1, !bracketed || index > 0);
 }
 
 // Every name of every convention, plain, with "#" for any number.
@@ -582,15 +595,30 @@ std::string conventionName(const NamingConvention& convention, JointRole role, S
                            int pair) {
   for (const RoleNames& row : convention.roles) {
     if (row.role != role || row.pair != pair) continue;
-    const std::vector<std::string_view> patterns = wordsIn(row.names);
-    const std::string_view pattern = patterns[isNumbered(patterns.front()) ? 0 : std::min(number, patterns.size() - 1)];
-    if (isSided(pattern) != (side != Side::kCenter)) continue;
-    if (!isNumbered(pattern) && number >= patterns.size()) continue;
-    const bool bracketed = pattern.find('[') != std::string_view::npos;
-    const std::size_t shown = bracketed ? number : number + 1;
-    return std::string(convention.prefix) + writtenOut(convention, pattern, side, shown, !bracketed || number > 0);
+    std::vector<std::string_view> patterns = wordsIn(row.names);
+    std::erase_if(patterns, [](std::string_view pattern) { return !isOwn(pattern); });
+    if (patterns.empty()) continue;
+    const std::size_t at = isNumbered(patterns.front()) ? 0 : std::min(number, patterns.size() - 1);
+    if (isSided(patterns[at]) != (side != Side::kCenter)) continue;
+    if (!isNumbered(patterns[at]) && number >= patterns.size()) continue;
+    return ownName(convention, patterns[at], side, number - at);
   }
   return "";
+}
+
+std::vector<std::string> conventionNames(const NamingConvention& convention, JointRole role, Side side,
+                                         std::size_t count) {
+  std::vector<std::string> names;
+  for (const RoleNames& row : convention.roles) {
+    if (row.role != role) continue;
+    for (const std::string_view pattern : wordsIn(row.names)) {
+      if (!isOwn(pattern) || isSided(pattern) != (side != Side::kCenter)) continue;
+      for (std::size_t i = 0; i < (isNumbered(pattern) ? count : 1); ++i) {
+        names.push_back(ownName(convention, pattern, side, i));
+      }
+    }
+  }
+  return names;
 }
 
 }  // namespace limber

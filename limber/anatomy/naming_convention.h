@@ -52,8 +52,10 @@ enum class JointRole : unsigned char {
 //   @          is the side, as NamingConvention::sides writes it; % the same as NamingConvention::otherSides does
 //   # ## ###   is the joint's number in its chain, from 1, of one, two or three digits at least
 //   [...]      is left out of the first joint of a chain, so that numbers begin with the second
-// Several names without a number are those of a chain, from its beginning. Upper and lower case, blanks and separators
-// (_ . - :) make no difference to readers.
+//   ~          at its beginning: of variants, which are read; the convention's own files have another name
+//   =          at its beginning: without the convention's prefix
+// Several names without a number are those of a chain, from its beginning; a numbered one behind them counts the joints
+// that follow. Upper and lower case, blanks and separators (_ . - :) make no difference to readers.
 struct RoleNames {
   JointRole role = JointRole::kHelper;
   std::string_view names;
@@ -108,5 +110,9 @@ std::optional<PartState> stateOf(JointRole role);
 // convention has no such name.
 std::string conventionName(const NamingConvention& convention, JointRole role, Side side, std::size_t number,
                            int pair = 0);
+
+// All names that the convention's own files may have of a role, with the numbers of up to `count` joints.
+std::vector<std::string> conventionNames(const NamingConvention& convention, JointRole role, Side side,
+                                         std::size_t count);
 
 }  // namespace limber

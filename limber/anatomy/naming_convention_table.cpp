@@ -2,11 +2,22 @@
 // (MotionBuilder's characters are those of many capture systems) they share one row.
 #include "limber/anatomy/naming_convention.h"
 
+#include <algorithm>
+
 namespace limber {
 
 namespace {
 
 using enum JointRole;
+
+// The rows of several lists as one.
+template <std::size_t... kSizes>
+constexpr auto joined(const RoleNames (&... lists)[kSizes]) {
+  std::array<RoleNames, (kSizes + ...)> all{};
+  auto end = all.begin();
+  ((end = std::copy(std::begin(lists), std::end(lists), end)), ...);
+  return all;
+}
 
 // clang-format off
 constexpr RoleNames kMixamo[] = {
@@ -35,33 +46,35 @@ constexpr RoleNames kUnreal[] = {
     {kIndex, "index_metacarpal_@"}, {kMiddle, "middle_metacarpal_@"}, {kRing, "ring_metacarpal_@"}, {kLittle, "pinky_metacarpal_@"},
     {kUpperLeg, "thigh_@"}, {kUpperLeg, "thigh_twist_##_@"}, {kLowerLeg, "calf_@"}, {kLowerLeg, "calf_twist_##_@"}, {kFoot, "foot_@"},
     {kToes, "ball_@"}, {kTip, "ball_leaf_@ head_leaf thumb_04_leaf_@ index_04_leaf_@ middle_04_leaf_@ ring_04_leaf_@ pinky_04_leaf_@"},
-    {kHelper, "ik_foot_root ik_foot_@ ik_hand_root ik_hand_gun ik_hand_@ interaction center_of_mass"}};
+    {kHelper, "ik_foot_root ik_foot_@ ik_hand_root ik_hand_gun ik_hand_@ interaction center_of_mass"}, {kAttachment, "weapon_@"}};
 
 // MetaHuman's body has Unreal's names, and correctives at every joint.
-constexpr RoleNames kMetaHuman[] = {
-    {kRoot, "root"}, {kHips, "pelvis"}, {kTrunk, "spine_##"}, {kNeck, "neck_##"}, {kHead, "head"},
-    {kCollar, "clavicle_@"}, {kUpperArm, "upperarm_@"}, {kUpperArm, "upperarm_twist_##_@"}, {kLowerArm, "lowerarm_@"},
-    {kLowerArm, "lowerarm_twist_##_@"}, {kHand, "hand_@"},
-    {kThumb, "thumb_##_@"}, {kIndex, "index_##_@"}, {kMiddle, "middle_##_@"}, {kRing, "ring_##_@"}, {kLittle, "pinky_##_@"},
-    {kIndex, "index_metacarpal_@"}, {kMiddle, "middle_metacarpal_@"}, {kRing, "ring_metacarpal_@"}, {kLittle, "pinky_metacarpal_@"},
-    {kUpperLeg, "thigh_@"}, {kUpperLeg, "thigh_twist_##_@"}, {kLowerLeg, "calf_@"}, {kLowerLeg, "calf_twist_##_@"}, {kFoot, "foot_@"},
-    {kToes, "ball_@"}, {kHelper, "ik_foot_root ik_foot_@ ik_hand_root ik_hand_gun ik_hand_@ interaction center_of_mass"},
+constexpr RoleNames kCorrectives[] = {
     {kAttachment, "upperarm_correctiveRoot_@ lowerarm_correctiveRoot_@ thigh_correctiveRoot_@ calf_correctiveRoot_@ upperarm_bck_@ "
                   "upperarm_fwd_@ upperarm_in_@ upperarm_out_@ lowerarm_bck_@ lowerarm_fwd_@ lowerarm_in_@ lowerarm_out_@ thigh_bck_@ "
-                  "thigh_fwd_@ thigh_in_@ thigh_out_@ calf_knee_@ calf_kneeBack_@ clavicle_pec_@ clavicle_out_@ clavicle_scap_@ "
-                  "spine_04_latissimus_@ upperarm_bicep_@ upperarm_tricep_@ upperarm_twistCor_##_@ thigh_twistCor_##_@ "
-                  "calf_twistCor_##_@ ankle_bck_@ ankle_fwd_@ wrist_inner_@ wrist_outer_@"}};
+                  "thigh_fwd_@ thigh_in_@ thigh_out_@ thigh_bck_lwr_@ thigh_fwd_lwr_@ calf_knee_@ calf_kneeBack_@ "
+                  "clavicle_pec_@ clavicle_out_@ clavicle_scap_@ spine_04_latissimus_@ upperarm_bicep_@ upperarm_tricep_@ upperarm_twistCor_##_@ "
+                  "thigh_twistCor_##_@ calf_twistCor_##_@ ankle_bck_@ ankle_fwd_@ wrist_inner_@ wrist_outer_@"}};
+constexpr auto kMetaHuman = joined(kUnreal, kCorrectives);
 
-constexpr RoleNames kUnity[] = {
-    {kRoot, "Root"}, {kHips, "Hips"}, {kTrunk, "Spine Chest UpperChest"}, {kTrunk, "Spine#"}, {kNeck, "Neck[#]"}, {kHead, "Head"},
-    {kJaw, "Jaw"}, {kEye, "@Eye"},
-    {kCollar, "@Shoulder"}, {kUpperArm, "@UpperArm"}, {kLowerArm, "@LowerArm"}, {kHand, "@Hand"},
-    {kThumb, "@ThumbMetacarpal @ThumbProximal @ThumbDistal"}, {kThumb, "@ThumbIntermediate @ThumbTip"},
-    {kIndex, "@IndexProximal @IndexIntermediate @IndexDistal"}, {kIndex, "@IndexMetacarpal @IndexTip"},
-    {kMiddle, "@MiddleProximal @MiddleIntermediate @MiddleDistal"}, {kMiddle, "@MiddleMetacarpal @MiddleTip"},
-    {kRing, "@RingProximal @RingIntermediate @RingDistal"}, {kRing, "@RingMetacarpal @RingTip"},
-    {kLittle, "@LittleProximal @LittleIntermediate @LittleDistal"}, {kLittle, "@LittleMetacarpal @LittleTip"},
-    {kUpperLeg, "@UpperLeg"}, {kLowerLeg, "@LowerLeg"}, {kFoot, "@Foot"}, {kToes, "@Toes"}, {kToes, "@ToeBase"}};
+// VRM 1.0, and Godot's SkeletonProfileHumanoid (scene/resources/skeleton_profile.cpp), differ from Unity in the thumb.
+constexpr RoleNames kHumanoidLimbs[] = {
+    {kEye, "@Eye"}, {kCollar, "@Shoulder"}, {kUpperArm, "@UpperArm"}, {kLowerArm, "@LowerArm"}, {kHand, "@Hand"},
+    {kUpperLeg, "@UpperLeg"}, {kLowerLeg, "@LowerLeg"}, {kFoot, "@Foot"}, {kToes, "@Toes"}};
+constexpr RoleNames kHumanoidFingers[] = {
+    {kIndex, "@IndexProximal @IndexIntermediate @IndexDistal"}, {kMiddle, "@MiddleProximal @MiddleIntermediate @MiddleDistal"},
+    {kRing, "@RingProximal @RingIntermediate @RingDistal"}, {kLittle, "@LittleProximal @LittleIntermediate @LittleDistal"}};
+constexpr RoleNames kHumanoidTrunk[] = {
+    {kRoot, "Root"}, {kHips, "Hips"}, {kTrunk, "Spine Chest UpperChest"}, {kNeck, "Neck"}, {kHead, "Head"}, {kJaw, "Jaw"}};
+constexpr RoleNames kUnityThumb[] = {{kThumb, "@ThumbProximal @ThumbIntermediate @ThumbDistal"}};
+constexpr RoleNames kVrmThumb[] = {{kThumb, "@ThumbMetacarpal @ThumbProximal @ThumbDistal"}};
+constexpr RoleNames kHumanoidVariants[] = {
+    {kTrunk, "~Spine#"}, {kNeck, "~Neck[#]"}, {kToes, "~@ToeBase"}, {kThumb, "~@ThumbTip"}, {kIndex, "~@IndexMetacarpal ~@IndexTip"},
+    {kMiddle, "~@MiddleMetacarpal ~@MiddleTip"}, {kRing, "~@RingMetacarpal ~@RingTip"}, {kLittle, "~@LittleMetacarpal ~@LittleTip"}};
+constexpr RoleNames kVrmTrunk[] = {{kHips, "hips"}, {kTrunk, "spine chest upperChest"}, {kNeck, "neck"}, {kHead, "head"}, {kJaw, "jaw"}};
+constexpr auto kUnity = joined(kHumanoidTrunk, kHumanoidLimbs, kUnityThumb, kHumanoidFingers, kHumanoidVariants);
+constexpr auto kGodot = joined(kHumanoidTrunk, kHumanoidLimbs, kVrmThumb, kHumanoidFingers, kHumanoidVariants);
+constexpr auto kVrm = joined(kVrmTrunk, kHumanoidLimbs, kVrmThumb, kHumanoidFingers, kHumanoidVariants);
 
 constexpr RoleNames kUnitySuffixed[] = {
     {kRoot, "Root"}, {kHips, "Hips"}, {kTrunk, "Spine Chest UpperChest"}, {kTrunk, "Spine#"}, {kNeck, "Neck[#]"}, {kHead, "Head"},
@@ -80,15 +93,19 @@ constexpr RoleNames kVroid[] = {
     {kThumb, "@_Thumb#"}, {kIndex, "@_Index#"}, {kMiddle, "@_Middle#"}, {kRing, "@_Ring#"}, {kLittle, "@_Little#"},
     {kUpperLeg, "@_UpperLeg"}, {kLowerLeg, "@_LowerLeg"}, {kFoot, "@_Foot"}, {kToes, "@_ToeBase"}};
 
-// The deform bones of Rigify, and of Blender's metarigs; some have words for a spine that others count.
-constexpr RoleNames kRigify[] = {
-    {kRoot, "root"}, {kSpineToHead, "spine[.###]"}, {kHips, "hips"}, {kTrunk, "chest upper_chest"}, {kNeck, "neck[.###]"}, {kHead, "head"},
-    {kLegBase, "pelvis.@"}, {kAttachment, "breast.@"}, {kJaw, "jaw"}, {kEye, "eye.@"},
-    {kCollar, "shoulder.@"}, {kUpperArm, "upper_arm.@"}, {kUpperArm, "upper_arm.@.###"}, {kLowerArm, "forearm.@"},
-    {kLowerArm, "forearm.@.###"}, {kHand, "hand.@"}, {kPalm, "palm.##.@"},
+// Blender's metarigs and the deform bones of Rigify, which count from the hips to the head, as spine.003 is a chest in one
+// rig and a neck in another. Other rigs have words for the trunk.
+constexpr RoleNames kBlenderLimbs[] = {
+    {kJaw, "jaw"}, {kEye, "eye.@"}, {kCollar, "shoulder.@"}, {kUpperArm, "upper_arm.@"}, {kLowerArm, "forearm.@"}, {kHand, "hand.@"},
     {kThumb, "thumb.##.@"}, {kIndex, "f_index.##.@"}, {kMiddle, "f_middle.##.@"}, {kRing, "f_ring.##.@"}, {kLittle, "f_pinky.##.@"},
-    {kUpperLeg, "thigh.@"}, {kUpperLeg, "thigh.@.###"}, {kLowerLeg, "shin.@"}, {kLowerLeg, "shin.@.###"}, {kFoot, "foot.@"},
-    {kToes, "toe.@"}, {kHelper, "heel.02.@"}};
+    {kUpperLeg, "thigh.@"}, {kLowerLeg, "shin.@"}, {kFoot, "foot.@"}, {kToes, "toe.@"}};
+constexpr RoleNames kBlenderTrunk[] = {{kHips, "hips"}, {kTrunk, "spine chest upper_chest"}, {kNeck, "neck"}, {kHead, "head"}};
+constexpr RoleNames kRigifyOthers[] = {
+    {kRoot, "root"}, {kSpineToHead, "spine[.###]"}, {kHips, "~hips"}, {kTrunk, "~chest ~upper_chest"}, {kNeck, "~neck[.###]"}, {kHead, "~head"},
+    {kLegBase, "pelvis.@"}, {kAttachment, "breast.@"}, {kUpperArm, "upper_arm.@.###"}, {kLowerArm, "forearm.@.###"}, {kPalm, "palm.##.@"},
+    {kUpperLeg, "thigh.@.###"}, {kLowerLeg, "shin.@.###"}, {kHelper, "heel.02.@"}};
+constexpr auto kBlender = joined(kBlenderTrunk, kBlenderLimbs);
+constexpr auto kRigify = joined(kBlenderLimbs, kRigifyOthers);
 
 constexpr RoleNames kAutoRigPro[] = {
     {kRoot, "c_traj c_pos"}, {kHips, "root.x"}, {kTrunk, "spine_##.x"}, {kNeck, "neck.x"}, {kNeck, "subneck_#.x"}, {kHead, "head.x"},
@@ -101,14 +118,16 @@ constexpr RoleNames kAutoRigPro[] = {
     {kLowerLeg, "leg_twist.@ leg_twist_2.@ leg.@"}, {kFoot, "foot.@"}, {kToes, "toes_01.@"}, {kToes, "toes.@"},
     {kAttachment, "breast_##.@ c_breast_##.@ bot_bend.@ c_bot_bend.@"}};
 
+// soupday/cc_blender_tools, rigify_mapping_data.py, has these beside Rigify's: DEF-spine.004 is CC_Base_NeckTwist01.
 constexpr RoleNames kReallusion[] = {
-    {kRoot, "BoneRoot"}, {kHips, "Hip"}, {kTrunk, "Spine##"}, {kTrunk, "Pelvis Waist"}, {kNeck, "NeckTwist##"}, {kHead, "Head"},
+    {kRoot, "=RL_BoneRoot BoneRoot"}, {kHips, "Hip"}, {kTrunk, "Waist Spine##"}, {kTrunk, "Pelvis"}, {kNeck, "NeckTwist##"}, {kHead, "Head"},
     {kJaw, "JawRoot"}, {kEye, "@_Eye"}, {kAttachment, "FacialBone UpperJaw Teeth01 Teeth02 Tongue##"},
     {kCollar, "@_Clavicle"}, {kUpperArm, "@_Upperarm"}, {kUpperArm, "@_UpperarmTwist##"}, {kLowerArm, "@_Forearm"},
     {kLowerArm, "@_ForearmTwist## @_ElbowShareBone"}, {kHand, "@_Hand"},
     {kThumb, "@_Thumb#"}, {kIndex, "@_Index#"}, {kMiddle, "@_Mid#"}, {kRing, "@_Ring#"}, {kLittle, "@_Pinky#"},
     {kUpperLeg, "@_Thigh"}, {kUpperLeg, "@_ThighTwist##"}, {kLowerLeg, "@_Calf"}, {kLowerLeg, "@_CalfTwist## @_KneeShareBone"},
-    {kFoot, "@_Foot"}, {kToes, "@_ToeBase"}, {kAttachment, "@_RibsTwist @_Breast @_ToeBaseShareBone"}};
+    {kFoot, "@_Foot"}, {kToes, "@_ToeBase"}, {kToes, "@_BigToe# @_IndexToe# @_MidToe# @_RingToe# @_PinkyToe#"},
+    {kAttachment, "@_RibsTwist @_Breast @_ToeBaseShareBone"}};
 
 // Genesis 1 to 8, and Poser's people before them.
 constexpr RoleNames kDaz[] = {
@@ -213,10 +232,13 @@ constexpr RoleNames kAdvancedSkeleton[] = {
     {kLittle, "PinkyFinger#_@"}, {kPalm, "Cup_@"},
     {kUpperLeg, "Hip_@"}, {kUpperLeg, "HipPart#_@"}, {kLowerLeg, "Knee_@"}, {kLowerLeg, "KneePart#_@"}, {kFoot, "Ankle_@"}, {kToes, "Toes_@"}};
 
-constexpr RoleNames kRoblox[] = {
-    {kRoot, "HumanoidRootPart HumanoidRootNode Root"}, {kHips, "LowerTorso"}, {kTrunk, "UpperTorso"}, {kHead, "Head"},
-    {kUpperArm, "@UpperArm"}, {kLowerArm, "@LowerArm"}, {kHand, "@Hand"},
-    {kUpperLeg, "@UpperLeg"}, {kLowerLeg, "@LowerLeg"}, {kFoot, "@Foot"}};
+// The 15 parts of the body; what else a character has is called by the joints of the class HumanoidRigDescription, fingers
+// as Unity's.
+constexpr RoleNames kRobloxBody[] = {
+    {kRoot, "HumanoidRootPart HumanoidRootNode Root"}, {kHips, "LowerTorso"}, {kTrunk, "UpperTorso Chest UpperChest"},
+    {kNeck, "Neck"}, {kHead, "Head"}, {kCollar, "@Clavicle"}, {kUpperArm, "@UpperArm"}, {kLowerArm, "@LowerArm"}, {kHand, "@Hand"},
+    {kUpperLeg, "@UpperLeg"}, {kLowerLeg, "@LowerLeg"}, {kFoot, "@Foot"}, {kToes, "@ToeBase"}};
+constexpr auto kRoblox = joined(kRobloxBody, kUnityThumb, kHumanoidFingers);
 
 // MikuMikuDance: the upper and the lower body are two children of the waist or the center.
 constexpr RoleNames kMmd[] = {
@@ -303,8 +325,11 @@ constexpr NamingConvention kConventions[] = {
     {"Unreal", "", {"l", "r"}, {}, kUnreal, "https://dev.epicgames.com/documentation/en-us/unreal-engine/skeletons-in-unreal-engine"},
     {"MetaHuman", "", {"l", "r"}, {}, kMetaHuman, "https://dev.epicgames.com/documentation/en-us/metahuman"},
     {"Unity", "", {"Left", "Right"}, {}, kUnity, "https://docs.unity3d.com/ScriptReference/HumanBodyBones.html"},
+    {"VRM", "", {"left", "right"}, {}, kVrm, "https://github.com/vrm-c/vrm-specification: specification/VRMC_vrm-1.0/humanoid.md"},
+    {"Godot", "", {"Left", "Right"}, {}, kGodot, "https://docs.godotengine.org/en/stable/classes/class_skeletonprofilehumanoid.html"},
     {"Unity, sides behind", "", {"L", "R"}, {}, kUnitySuffixed, "https://docs.unity3d.com/ScriptReference/HumanBodyBones.html"},
     {"VRoid", "J_Bip_", {"L", "R"}, {}, kVroid, "https://vroid.com/en/studio"},
+    {"Blender", "", {"L", "R"}, {}, kBlender, "https://docs.blender.org/manual/en/latest/animation/armatures/bones/editing/naming.html"},
     {"Rigify", "DEF-", {"L", "R"}, {}, kRigify, "https://docs.blender.org/manual/en/latest/addons/rigging/rigify/"},
     {"Auto-Rig Pro", "", {"l", "r"}, {}, kAutoRigPro, "https://www.lucky3d.fr/auto-rig-pro/doc/"},
     {"Character Creator", "CC_Base_", {"L", "R"}, {}, kReallusion, "https://manual.reallusion.com/Character-Creator-4/"},

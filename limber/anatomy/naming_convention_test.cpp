@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <set>
 #include <string>
@@ -64,6 +65,29 @@ TEST(NamingConvention, ANameMeansOneThingInOneConvention) {
       }
     }
   }
+}
+
+const NamingConvention& conventionCalled(std::string_view name) {
+  return *std::ranges::find(namingConventions(), name, &NamingConvention::name);
+}
+
+TEST(NamingConvention, NamesAreCountedBehindThoseWithoutANumber) {
+  const NamingConvention& character = conventionCalled("Character Creator");
+  EXPECT_EQ(conventionName(character, JointRole::kTrunk, Side::kCenter, 0), "CC_Base_Waist");
+  EXPECT_EQ(conventionName(character, JointRole::kTrunk, Side::kCenter, 1), "CC_Base_Spine01");
+  EXPECT_EQ(conventionName(character, JointRole::kRoot, Side::kCenter, 0), "RL_BoneRoot");
+}
+
+TEST(NamingConvention, VariantsAreReadAndNotWritten) {
+  const NamingConvention& unity = conventionCalled("Unity");
+  EXPECT_EQ(conventionNames(unity, JointRole::kToes, Side::kLeft, 9), std::vector<std::string>{"LeftToes"});
+  EXPECT_EQ(conventionName(unity, JointRole::kTrunk, Side::kCenter, 3), "");
+  Skeleton skeleton = testing::personOf(unity, {}).skeleton;
+  const Index toes = skeleton.find("LeftToes").value();
+  skeleton.joints[toes].name = "LeftToeBase";
+  const std::optional<ConventionMatch> match = findConvention(skeleton);
+  ASSERT_TRUE(match && match->roles[toes]);
+  EXPECT_EQ(match->roles[toes]->role, JointRole::kToes);
 }
 
 // What its names say is certain.

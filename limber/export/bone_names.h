@@ -1,4 +1,5 @@
-// The one table of what programs call the bones of a person, and the other names that their own skeletons have.
+// What programs call the bones of a person, and the other names that their own skeletons have: those of the naming
+// conventions (limber/anatomy/naming_convention.h).
 #pragma once
 
 #include <optional>
@@ -11,7 +12,7 @@
 
 namespace limber {
 
-// The columns of the table. MetaHuman's bones are called as Unreal's.
+// Each is one of the naming conventions.
 enum class BoneNames {
   kVrm,
   kUnreal,
@@ -25,7 +26,8 @@ enum class BoneNames {
   kRoblox,
 };
 
-// The bone of VRM ("leftUpperArm") in a program's names; none where the table has no such bone.
+// The bone of VRM ("leftUpperArm") in a program's names, or in its spelling where it has no such bone; none where
+// VRM has no such bone.
 std::optional<std::string> boneName(std::string_view vrmBone, BoneNames column, NameStyle style);
 
 // The names of the joints from the hips to the head, hips and head included, where the program counts them; empty

@@ -36,11 +36,19 @@ Skeleton chain(const std::vector<std::string>& names) {
   return skeleton;
 }
 
+// Of a skeleton with so many joints, none of them in a part.
+Anatomy unread(std::size_t joints) {
+  Anatomy anatomy;
+  anatomy.size = 1;
+  anatomy.partOf.resize(joints);
+  return anatomy;
+}
+
 TEST(TargetNames, CountsTheSpineHoweverManyJointsItHas) {
   const Skeleton skeleton = chain({"p", "a", "b", "c", "d", "n", "m", "h"});
   const std::vector<HumanoidJoint> bones = {{"hips", 0},       {"spine", 1}, {"chest", 3},
                                             {"upperChest", 4}, {"neck", 5},  {"head", 7}};
-  const Anatomy none{{}, 0, 1, {}, std::vector<std::optional<std::size_t>>(8), 0};
+  const Anatomy none = unread(8);
   EXPECT_THAT(targetNames(skeleton, none, bones, BoneNames::kUnreal, NameStyle::kSnake).joints,
               ElementsAre("pelvis", "spine_01", "spine_02", "spine_03", "spine_04", "neck_01", "neck_02", "head"));
   EXPECT_THAT(targetNames(skeleton, none, bones, BoneNames::kMixamo, NameStyle::kMixamo).joints,
@@ -118,7 +126,7 @@ TEST(TargetNames, OwnNamesCountMoreThanAReadingThatDiffers) {
     if (bone.bone == "head") bone.joint = *person.skeleton.find("neck_02");
     if (bone.bone == "leftLittleProximal") bone.joint = *person.skeleton.find("middle_01_l");
   }
-  const Anatomy none{{}, 0, 1, {}, std::vector<std::optional<std::size_t>>(person.skeleton.joints.size()), 0};
+  const Anatomy none = unread(person.skeleton.joints.size());
   const TargetNames names = targetNames(person.skeleton, none, bones, BoneNames::kUnreal, NameStyle::kSnake);
   EXPECT_EQ(names.joints, namesOf(person.skeleton));
 }
@@ -134,7 +142,7 @@ TEST(TargetNames, ABoneThatIsReadInAClothDoesNotTakeTheNameOfTheLeg) {
   for (HumanoidJoint& bone : bones) {
     if (bone.bone == "leftUpperLeg") bone.joint = skeleton.jointCount() - 1;
   }
-  const Anatomy none{{}, 0, 1, {}, std::vector<std::optional<std::size_t>>(skeleton.joints.size()), 0};
+  const Anatomy none = unread(skeleton.joints.size());
   const TargetNames names = targetNames(skeleton, none, bones, BoneNames::kMixamo, NameStyle::kMixamo);
   EXPECT_EQ(names.joints, namesOf(skeleton));
 }
@@ -151,7 +159,7 @@ TEST(TargetNames, SpreadsAShortSpineOverMetaHumans) {
   const Skeleton skeleton = chain({"pelvis", "spine_01", "spine_02", "spine_03", "neck_01", "head"});
   const std::vector<HumanoidJoint> bones = {{"hips", 0},       {"spine", 1}, {"chest", 2},
                                             {"upperChest", 3}, {"neck", 4},  {"head", 5}};
-  const Anatomy none{{}, 0, 1, {}, std::vector<std::optional<std::size_t>>(6), 0};
+  const Anatomy none = unread(6);
   EXPECT_THAT(targetNames(skeleton, none, bones, BoneNames::kMetaHuman, NameStyle::kSnake).joints,
               ElementsAre("pelvis", "spine_01", "spine_03", "spine_05", "neck_01", "head"));
 }
@@ -159,14 +167,14 @@ TEST(TargetNames, SpreadsAShortSpineOverMetaHumans) {
 TEST(TargetNames, RigifyCountsFromTheHipsToTheHead) {
   const Skeleton skeleton = chain({"p", "a", "b", "n", "h"});
   const std::vector<HumanoidJoint> bones = {{"hips", 0}, {"spine", 1}, {"chest", 2}, {"neck", 3}, {"head", 4}};
-  const Anatomy none{{}, 0, 1, {}, std::vector<std::optional<std::size_t>>(5), 0};
+  const Anatomy none = unread(5);
   EXPECT_THAT(targetNames(skeleton, none, bones, BoneNames::kRigify, NameStyle::kRigify).joints,
               ElementsAre("DEF-spine", "DEF-spine.001", "DEF-spine.002", "DEF-spine.003", "DEF-spine.004"));
 }
 
 TEST(TargetNames, KeepsNamesApart) {
   const Skeleton skeleton = chain({"Hand.L", "hand_L", "lHand", "\xe6\x89\x8b"});
-  const Anatomy none{{}, 0, 1, {}, std::vector<std::optional<std::size_t>>(4), 0};
+  const Anatomy none = unread(4);
   EXPECT_THAT(targetNames(skeleton, none, {}, BoneNames::kUnreal, NameStyle::kSnake).joints,
               ElementsAre("hand_l", "hand_l_2", "hand_l_3", "\xe6\x89\x8b"));
 }
