@@ -1,5 +1,6 @@
 // limber info: what is in a file.
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "command.h"
@@ -211,7 +212,7 @@ void printConventions() {
 
 void run(const InfoArguments& options) {
   if (options.conventions) return printConventions();
-  if (options.input.empty()) throw Error(ErrorCode::kBadArgument, "info needs a file to tell about, or --conventions");
+  if (options.input.empty()) throw CLI::RequiredError("FILE");
   const Asset asset = readAsset(options.input);
   const AssetInfo info = inspectAsset(asset);
   if (options.json) {

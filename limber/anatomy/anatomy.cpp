@@ -25,6 +25,21 @@ struct Guesses {
   std::optional<PartField> field;
 };
 
+// What the sides of a convention's names say for a guess, a log-likelihood beside what is learned of words for sides:
+// they count more than such words, and less than the form of a model that was mirrored.
+double sidesScore(const BodyReading& reading, const Axes& guess) {
+  constexpr double kSides =
+      7;  // of a person who crawls in a flat rest pose from 5 on right, of a mirrored one up to 10
+  if (!reading.convention) return 0;
+  double votes = 0;
+  for (const HalfJoint& half : reading.body.joints) {
+    if (!half.partner || !reading.declared[half.joint]) continue;
+    const Side side = reading.declared[half.joint]->side;
+    if (side != Side::kCenter) votes += side == Side::kLeft ? 1 : -1;
+  }
+  return votes * guess.left().dot(reading.body.lateral) > 0 ? kSides : 0;
+}
+
 Guesses readUnderEach(const BodyReading& reading, std::span<const std::uint32_t> allowed, const PartWeights& weights) {
   StateScores steady(reading.measures.size());
   addScores(reading.measures.steadyFeatures(), weights, steady);
@@ -33,7 +48,7 @@ Guesses readUnderEach(const BodyReading& reading, std::span<const std::uint32_t>
     StateScores own = steady;
     addScores(reading.measures.features(axes), weights, own);
     PartField other(reading.body, own, weights, allowed);
-    guesses.scores.push_back(axesScore(reading.measures, axes, other, weights));
+    guesses.scores.push_back(axesScore(reading.measures, axes, other, weights) + sidesScore(reading, axes));
     if (guesses.field && guesses.scores.back() <= guesses.scores[guesses.best]) continue;
     guesses.best = guesses.scores.size() - 1;
     guesses.field.emplace(std::move(other));

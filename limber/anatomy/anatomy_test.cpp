@@ -392,6 +392,18 @@ TEST(Anatomy, SkirtsStrapsAndBreastsAreNoLimbs) {
   }
 }
 
+// A person may lie askew to all axes.
+TEST(Anatomy, ABodyAskewToAllAxesIsRead) {
+  const MadeBody body = limber::testing::personWith(limber::testing::NameHabit::kMixamo);
+  const Quat askew = Quat::FromTwoVectors(Vec3::UnitX(), Vec3(1, 1, 1));
+  for (const bool named : {true, false}) {
+    const Skeleton skeleton = limber::testing::turnedAsAWhole(named ? body.skeleton : nameless(body.skeleton), askew);
+    const Anatomy anatomy = readAnatomy(skeleton);
+    expectInOrder(anatomy, skeleton);
+    EXPECT_FALSE(anatomy.parts.empty());
+  }
+}
+
 // Neither depth nor breadth stops the reading.
 TEST(Anatomy, ThousandsOfJointsAreRead) {
   constexpr int kMany = 8000;

@@ -22,12 +22,15 @@ std::vector<Vec3> finitePositions(const Skeleton& skeleton, const Pose& pose) {
   return positions;
 }
 
+// The axes that lie in the plane, or the one that is nearest to it where all lie askew.
 std::vector<Axes> guessesFor(const Vec3& lateral) {
+  const double nearest = lateral.cwiseAbs().minCoeff();
   std::vector<Axes> guesses;
   for (const double sign : {1.0, -1.0}) {
     for (const Eigen::Index axis : {1, 2, 0}) {
       Vec3 up = sign * Vec3::Unit(axis);
-      if (std::abs(up.dot(lateral)) > kMostOutOfPlane) continue;
+      const double outOfPlane = std::abs(up.dot(lateral));
+      if (outOfPlane > kMostOutOfPlane && outOfPlane > nearest) continue;
       up = (up - up.dot(lateral) * lateral).normalized();
       for (const double left : {1.0, -1.0}) guesses.push_back({up, (left * lateral).cross(up)});
     }

@@ -10,6 +10,8 @@ namespace limber {
 
 namespace {
 
+constexpr double kLikelierThanNot = 0.5;  // probability from which on a bone is named
+
 class HumanoidReader {
  public:
   explicit HumanoidReader(const Skeleton& skeleton)
@@ -50,6 +52,7 @@ class HumanoidReader {
   void give(std::string_view name, Index joint, double confidence) {
     const std::span<const std::string_view> bones = humanoidBones();
     const auto bone = std::find(bones.begin(), bones.end(), name);
+    if (confidence < kLikelierThanNot) return;
     const bool taken =
         std::any_of(given_.begin(), given_.end(), [&](const auto& one) { return one.second.joint == joint; });
     if (bone != bones.end() && !taken) given_.emplace(*bone, HumanoidJoint{*bone, joint, confidence});

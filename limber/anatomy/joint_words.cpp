@@ -305,8 +305,12 @@ bool saysHips(std::string_view name) {
 
 bool saysMetapodial(std::string_view name) {
   const std::vector<std::string> tokens = detail::wordsOfName(name);
-  return std::any_of(tokens.begin(), tokens.end(),
-                     [](const std::string& token) { return extraWordOf(token) == kMetapodial; });
+  const bool isNumbered = std::any_of(tokens.begin(), tokens.end(), [](const std::string& token) {
+    return std::isdigit(static_cast<unsigned char>(token.front())) != 0;
+  });
+  return std::any_of(tokens.begin(), tokens.end(), [&](const std::string& token) {
+    return extraWordOf(token) == kMetapodial || (token == "palm" && isNumbered);  // "palm.01.L", not a hand's "Palm.L"
+  });
 }
 
 std::vector<JointWords> wordsOfJoints(const Skeleton& skeleton) {

@@ -132,7 +132,7 @@ TEST(Crowd, GivesEachCharacterBuildAndClipABodyBeforeOneHasTwo) {
     for (std::size_t i = first; i < first + 3; ++i) clips.insert(crowd.bodies[i].clip);
     EXPECT_EQ(clips.size(), 3u);
   }
-  EXPECT_TRUE(crowd.asset.warnings.empty());
+  for (const Warning& warning : crowd.asset.warnings.items()) EXPECT_EQ(warning.kind, "doubtful-matches");
 }
 
 TEST(Crowd, OfFewerBodiesSaysWhatIsLeftOut) {
@@ -145,7 +145,8 @@ TEST(Crowd, OfFewerBodiesSaysWhatIsLeftOut) {
     EXPECT_EQ(two.clips[two.bodies[i].clip], all.clips[all.bodies[i].clip]);
     EXPECT_EQ(two.bodies[i].offset, all.bodies[i].offset);
   }
-  const std::vector<Warning>& warnings = two.asset.warnings.items();
+  std::vector<Warning> warnings = two.asset.warnings.items();
+  std::erase_if(warnings, [](const Warning& warning) { return warning.kind == "doubtful-matches"; });
   ASSERT_EQ(warnings.size(), 2u);
   EXPECT_EQ(warnings[0].kind, "characters-left-out");
   EXPECT_TRUE(warnings[0].message.ends_with(all.builds[2].name)) << warnings[0].message;

@@ -230,8 +230,8 @@ void turn(LabelledSkeleton& body, Random& random) {
 // Bones of both sides alike; now and then what only some bodies have is several times as long or as short.
 void stretch(LabelledSkeleton& body, Random& random) {
   constexpr std::array kVaries = {PartKind::kWing, PartKind::kTail, PartKind::kNeck, PartKind::kFin, PartKind::kEar};
-  const PartKind varied = random.below(3) == 0 ? kVaries[random.below(kVaries.size())] : PartKind::kOther;
-  const double variation = std::exp(0.9 * random.normal());
+  const PartKind varied = random.below(4) == 0 ? kVaries[random.below(kVaries.size())] : PartKind::kOther;
+  const double variation = std::exp(0.5 * random.normal());
   const JointTree tree(body.skeleton);
   const std::vector<Vec3> positions = restPositions(body.skeleton);
   for (const HalfJoint& half : foldBody(tree, positions).joints) {
