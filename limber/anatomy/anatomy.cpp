@@ -25,22 +25,40 @@ struct Guesses {
   std::optional<PartField> field;
 };
 
-// What the sides of a convention's names say for a guess, a log-likelihood beside what is learned of words for sides:
-// they count more than such words, and less than the form of a model that was mirrored.
-double sidesScore(const BodyReading& reading, const Axes& guess) {
-  constexpr double kSides =
-      7;  // of a person who crawls in a flat rest pose from 5 on right, of a mirrored one up to 10
+// Mean position of the declared joints of these states; none where there are none.
+std::optional<Vec3> meanOf(const BodyReading& reading, std::initializer_list<PartState> states) {
+  Vec3 sum = Vec3::Zero();
+  std::size_t count = 0;
+  for (Index j = 0; j < reading.declared.size(); ++j) {
+    const std::optional<PartState> state = reading.declared[j] ? stateOf(reading.declared[j]->role) : std::nullopt;
+    if (!state || std::find(states.begin(), states.end(), *state) == states.end()) continue;
+    sum += reading.positions[j];
+    ++count;
+  }
+  return count > 0 ? std::optional<Vec3>(sum / static_cast<double>(count)) : std::nullopt;
+}
+
+// What the names of a convention say for a guess of the axes, a log-likelihood: people are upright from their feet to
+// their shoulders. Of sides they say no more than other words do where form tells: a model that was mirrored has the
+// names of before.
+double conventionScore(const BodyReading& reading, const Axes& guess, bool sidesByNames) {
+  constexpr double kUp = 10, kSides = 7;  // of flat rest poses read in a frame that crawls from 5 on right
   if (!reading.convention) return 0;
-  double votes = 0;
+  double score = 0, votes = 0;
+  const std::optional<Vec3> arms = meanOf(reading, {PartState::kArmUpper}),
+                            feet = meanOf(reading, {PartState::kLegEnd});
+  if (arms && feet && (*arms - *feet).norm() > 0) score += kUp * guess.up.dot((*arms - *feet).normalized());
+  if (!sidesByNames) return score;
   for (const HalfJoint& half : reading.body.joints) {
     if (!half.partner || !reading.declared[half.joint]) continue;
     const Side side = reading.declared[half.joint]->side;
     if (side != Side::kCenter) votes += side == Side::kLeft ? 1 : -1;
   }
-  return votes * guess.left().dot(reading.body.lateral) > 0 ? kSides : 0;
+  return score + (votes * guess.left().dot(reading.body.lateral) > 0 ? kSides : 0);
 }
 
-Guesses readUnderEach(const BodyReading& reading, std::span<const std::uint32_t> allowed, const PartWeights& weights) {
+Guesses readUnderEach(const BodyReading& reading, std::span<const std::uint32_t> allowed, const PartWeights& weights,
+                      bool sidesByNames) {
   StateScores steady(reading.measures.size());
   addScores(reading.measures.steadyFeatures(), weights, steady);
   Guesses guesses;
@@ -48,7 +66,8 @@ Guesses readUnderEach(const BodyReading& reading, std::span<const std::uint32_t>
     StateScores own = steady;
     addScores(reading.measures.features(axes), weights, own);
     PartField other(reading.body, own, weights, allowed);
-    guesses.scores.push_back(axesScore(reading.measures, axes, other, weights) + sidesScore(reading, axes));
+    guesses.scores.push_back(axesScore(reading.measures, axes, other, weights) +
+                             conventionScore(reading, axes, sidesByNames));
     if (guesses.field && guesses.scores.back() <= guesses.scores[guesses.best]) continue;
     guesses.best = guesses.scores.size() - 1;
     guesses.field.emplace(std::move(other));
@@ -71,7 +90,7 @@ Anatomy read(const Skeleton& skeleton, const Pose& pose, const AnatomyOptions& o
   anatomy.partOf.resize(skeleton.jointCount());
   if (skeleton.joints.empty()) return anatomy;
   const BodyReading reading(skeleton, pose, options.names, conventions);
-  const Guesses guesses = readUnderEach(reading, certainStates(reading, options), weights);
+  const Guesses guesses = readUnderEach(reading, certainStates(reading, options), weights, options.sidesByNames);
   const bool isPossible = guesses.field->logSum() > static_cast<double>(kNever) / 2;
   // What names are certain of goes first, then what the file declares.
   if (!isPossible && reading.convention) return read(skeleton, pose, options, false, weights);

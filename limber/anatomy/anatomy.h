@@ -95,6 +95,9 @@ struct FixedLabel {
 struct AnatomyOptions {
   bool names = true;  // whether joints' names, and the bones that the file declares them to be, have a say
   std::span<const FixedLabel> fixed;
+  // The pose is a frame of a motion, in which limbs may be anywhere: the sides of a convention's names count more than
+  // what form says of left and right.
+  bool sidesByNames = false;
 };
 
 // The body of a skeleton in a pose. A conditional random field over the folded skeleton (half_body.h): each joint's

@@ -254,9 +254,19 @@ struct Vote {
   std::uint32_t core = 0;
 };
 
+bool hasPrefix(const Skeleton& skeleton, std::string_view prefix) {
+  const std::string plain = plainNameOf(prefix).text;
+  return !plain.empty() && std::any_of(skeleton.joints.begin(), skeleton.joints.end(), [&](const Joint& joint) {
+    return plainNameOf(joint.name).text.starts_with(plain);
+  });
+}
+
 class Finder {
  public:
-  explicit Finder(const Skeleton& skeleton) : skeleton_(skeleton), names_(plainNames(skeleton)) {}
+  explicit Finder(const Skeleton& skeleton) : names_(plainNames(skeleton)) {
+    for (const NamingConvention& convention : namingConventions())
+      hasOwnPrefix_.push_back(hasPrefix(skeleton, convention.prefix));
+  }
 
   std::optional<ConventionMatch> find() const {
     std::string prefix;
@@ -337,7 +347,10 @@ class Finder {
         }
       });
     }
-    const auto rank = [](const Vote& vote) { return std::pair(isWhole(vote.core), vote.named); };
+    // Of programs that share their names that whose prefix they have.
+    const auto rank = [&](const Vote& vote) {
+      return std::pair(isWhole(vote.core), vote.named * (hasOwnPrefix_[vote.convention] ? 2 : 1));
+    };
     return *std::max_element(votes.begin(), votes.end(),
                              [&](const Vote& a, const Vote& b) { return rank(a) < rank(b); });
   }
@@ -354,8 +367,8 @@ class Finder {
     return role;
   }
 
-  const Skeleton& skeleton_;
-  std::vector<PlainName> names_;  // #J
+  std::vector<PlainName> names_;    // #J
+  std::vector<bool> hasOwnPrefix_;  // #conventions, whether some joint has the prefix of its files
 };
 
 // Order of a limb's segments from the body to its end; none for what is no segment.
@@ -400,7 +413,7 @@ class TreeCheck {
   // False where the tree is not the convention's.
   bool agrees() {
     decideSpineToHead();
-    dropForelegsWithoutFeet();
+    if (lacksForefeet()) return false;
     std::size_t named = 0;
     std::vector<Index> wrong;
     for (Index j = 0; j < tree_.size(); ++j) {
@@ -440,17 +453,14 @@ class TreeCheck {
     }
   }
 
-  // What is called a foreleg and has no foot may be an arm.
-  void dropForelegsWithoutFeet() {
+  // What is called a foreleg and has no foot may be an arm: then it is another animal.
+  bool lacksForefeet() const {
     const auto has = [&](JointRole role, int pair) {
       return std::any_of(match_.roles.begin(), match_.roles.end(), [&](const std::optional<NamedRole>& each) {
         return each && each->role == role && each->pair == pair;
       });
     };
-    if (!has(JointRole::kUpperLeg, 1) || has(JointRole::kFoot, 0)) return;
-    for (std::optional<NamedRole>& role : match_.roles) {
-      if (role && role->pair == 0 && orderInLimb(role->role) && !isOfArm(role->role)) role.reset();
-    }
+    return has(JointRole::kUpperLeg, 1) && !has(JointRole::kFoot, 0);
   }
 
   bool isAttachedRight(Index joint) const {
@@ -507,19 +517,23 @@ std::optional<Vec3> meanOf(const ConventionMatch& match, std::span<const Vec3> r
   return sum / static_cast<double>(count);
 }
 
-// Animals that are named as people are: a level trunk, and hands as low as feet. Of people the arms of no rest pose
-// reach that far along the legs.
-bool standsOnHands(const Skeleton& skeleton, const ConventionMatch& match) {
-  constexpr double kLevel = 0.5;  // cosine between trunk and legs, 60 degrees: below it the trunk lies across them
-  constexpr double kAsLow = 0.3;  // fraction of the legs' length by which hands may be higher than feet
+// Animals that are named as people are: the trunk lies across the legs, and the arms reach as low as these. Of people
+// the arms of no rest pose do.
+bool standsOnArms(const Skeleton& skeleton, const ConventionMatch& match) {
+  constexpr double kAcross =
+      0.85;  // cosine between trunk and legs, 32 degrees: above it the trunk goes on from the legs
+  // Fractions of the legs' length by which hands, or elbows where there are no hands, may be higher than feet.
+  constexpr double kHands = 0.3, kElbows = 0.7;
   const std::vector<Vec3> rest = restPositions(skeleton);
   const auto hips = meanOf(match, rest, {JointRole::kUpperLeg}), feet = meanOf(match, rest, {JointRole::kFoot}),
-             shoulders = meanOf(match, rest, {JointRole::kUpperArm}), hands = meanOf(match, rest, {JointRole::kHand});
-  if (!hips || !feet || !shoulders || !hands) return false;
+             shoulders = meanOf(match, rest, {JointRole::kUpperArm}), hands = meanOf(match, rest, {JointRole::kHand}),
+             elbows = meanOf(match, rest, {JointRole::kLowerArm});
+  if (!hips || !feet || !shoulders || (!hands && !elbows)) return false;
   const Vec3 legs = *feet - *hips, trunk = *shoulders - *hips;
   if (legs.norm() <= 0 || trunk.norm() <= 0) return false;
   const Vec3 down = legs.normalized();
-  return std::abs(down.dot(trunk)) < kLevel * trunk.norm() && down.dot(*feet - *hands) < kAsLow * legs.norm();
+  const double higher = down.dot(*feet - (hands ? *hands : *elbows)) / legs.norm();
+  return std::abs(down.dot(trunk)) < kAcross * trunk.norm() && higher < (hands ? kHands : kElbows);
 }
 
 }  // namespace
@@ -527,7 +541,7 @@ bool standsOnHands(const Skeleton& skeleton, const ConventionMatch& match) {
 std::optional<ConventionMatch> findConvention(const Skeleton& skeleton) {
   if (skeleton.joints.size() < kMinCoreJoints) return std::nullopt;
   std::optional<ConventionMatch> match = Finder(skeleton).find();
-  if (!match || !TreeCheck(skeleton, *match).agrees() || standsOnHands(skeleton, *match)) return std::nullopt;
+  if (!match || !TreeCheck(skeleton, *match).agrees() || standsOnArms(skeleton, *match)) return std::nullopt;
   return match;
 }
 

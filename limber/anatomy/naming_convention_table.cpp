@@ -79,7 +79,7 @@ constexpr auto kVrm = joined(kVrmTrunk, kHumanoidLimbs, kVrmThumb, kHumanoidFing
 constexpr RoleNames kUnitySuffixed[] = {
     {kRoot, "Root"}, {kHips, "Hips"}, {kTrunk, "Spine Chest UpperChest"}, {kTrunk, "Spine#"}, {kNeck, "Neck[#]"}, {kHead, "Head"},
     {kJaw, "Jaw"}, {kEye, "Eye_@"},
-    {kCollar, "Shoulder_@"}, {kUpperArm, "UpperArm_@"}, {kLowerArm, "LowerArm_@"}, {kHand, "Hand_@"},
+    {kCollar, "Shoulder_@"}, {kUpperArm, "UpperArm_@"}, {kLowerArm, "LowerArm_@"}, {kHand, "Hand_@"}, {kHand, "~Wrist_@"},
     {kThumb, "Thumb#_@"}, {kThumb, "ThumbProximal_@ ThumbIntermediate_@ ThumbDistal_@"},
     {kIndex, "Index#_@"}, {kIndex, "IndexProximal_@ IndexIntermediate_@ IndexDistal_@"},
     {kMiddle, "Middle#_@"}, {kMiddle, "MiddleProximal_@ MiddleIntermediate_@ MiddleDistal_@"},

@@ -125,6 +125,17 @@ TEST(NamingConvention, AnyPrefixAndNumbersOfExportersArePassedOver) {
   }
 }
 
+// Of conventions that share most names the one whose prefix they have, whatever ends and attachments are called.
+TEST(NamingConvention, ThePrefixTellsWhose) {
+  Skeleton skeleton = testing::personOf(namingConventions().front(), {}).skeleton;
+  for (const char* end : {"mixamorig:LeftToeEnd", "mixamorig:RightToeEnd", "mixamorig:HeadEnd"}) {
+    testing::addJoint(skeleton, end, "mixamorig:Head", {0, 0.1, 0});
+  }
+  EXPECT_EQ(findConvention(skeleton)->convention->name, "Mixamo");
+  for (Joint& joint : skeleton.joints) joint.name = joint.name.substr(joint.name.find(':') + 1);
+  EXPECT_EQ(findConvention(skeleton)->convention->name, "MotionBuilder");
+}
+
 // Names are evidence, no more, where the tree says otherwise.
 TEST(NamingConvention, ATreeThatContradictsNamesIsBelieved) {
   Skeleton skeleton = testing::personOf(namingConventions().front(), {}).skeleton;

@@ -127,8 +127,12 @@ class PartMaker {
       if (kindAt(i) != kind) continue;
       const bool isTowardsHead = kind == PartKind::kTrunk && hasHead_[i];
       const bool isPair = reading_.body.joints[i].kind == HalfKind::kPair;
+      // A limb goes on with its next segment, whatever twist joints and palms beside it carry.
+      const bool isNextSegment =
+          (kind == PartKind::kLeg || kind == PartKind::kArm) && labels_.states[i] > labels_.states[parent];
       const std::size_t size = reading_.tree.subtree(reading_.body.joints[i].joint).size() +
-                               (isTowardsHead || isPair ? reading_.tree.size() : 0);
+                               (isTowardsHead || isPair ? reading_.tree.size() : 0) +
+                               (isNextSegment ? 2 * reading_.tree.size() : 0);
       if (size <= most) continue;
       most = size;
       best = i;
@@ -201,7 +205,7 @@ class PartMaker {
     }
   }
 
-  // A foot on a root of its own belongs to the leg of its side that has none and ends nearest to it.
+  // A foot on a root of its own belongs to the leg of its side that has none and ends nearest to it, and so do toes.
   void joinFeet() {
     for (std::size_t f = 0; f < parts_.size(); ++f) {
       const Part& foot = parts_[f];
@@ -211,7 +215,8 @@ class PartMaker {
       double nearest = std::numeric_limits<double>::infinity();
       for (std::size_t p = 0; p < parts_.size(); ++p) {
         const Part& part = parts_[p];
-        if (p == f || part.kind != PartKind::kLeg || part.side != foot.side || part.end || !part.upper) continue;
+        const bool lacksIt = !part.end || (!foot.end && !part.toes);
+        if (p == f || part.kind != PartKind::kLeg || part.side != foot.side || !lacksIt || !part.upper) continue;
         const double away = (reading_.positions[part.joints.back()] - reading_.positions[foot.joints.front()]).norm();
         if (away >= nearest) continue;
         nearest = away;

@@ -69,7 +69,7 @@ class Matcher {
         source_(posed_ ? *posed_ : source),
         target_(target),
         unlikeBodies_(unlikeBodies),
-        from_(source_),
+        from_(source_, AnatomyOptions{.names = true, .fixed = {}, .sidesByNames = posed_.has_value()}),
         to_(target),
         sourceTree_(source_),
         targetTree_(target) {
