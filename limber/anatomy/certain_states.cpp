@@ -37,6 +37,7 @@ class Declared {
  public:
   explicit Declared(const BodyReading& reading)
       : roles_(reading.declared),
+        words_(reading.words),
         tree_(reading.tree),
         contradicted_(roles_.size(), false),
         carriesCenter_(roles_.size(), false),
@@ -71,6 +72,9 @@ class Declared {
     if (roles_[joint]) return bit(PartState::kOther) | own;  // a tip
     if (contradicted_[joint]) return kAllStates;
     if (!has(PartState::kLegUpper) || !has(PartState::kArmUpper)) return maskOfFew();
+    // Where a declared joint's bone ends.
+    const bool isLeaf = tree_.children(joint).empty() && words_[joint].has(NameMark::kEnd);
+    if (isLeaf && above && tree_.parent(joint) == above) return bit(PartState::kOther) | own;
     std::uint32_t mask = kAllStates & ~kLegStates & ~kArmStates;
     if (has(PartState::kHead)) mask &= ~(bit(PartState::kNeck) | bit(PartState::kHead));
     const bool carries = carriesCenter_[joint] || carriesLimb_[joint];
@@ -79,6 +83,7 @@ class Declared {
     if (!above) return mask;
     // What a limb has beyond its declared joints, where none of its side is declared to be that.
     const PartState state = *stateAt(*above);
+    if (state == PartState::kHead) mask |= own;  // a face's joints
     const PartKind kind = kindOf(state);
     const bool isLimb = kind == PartKind::kLeg || kind == PartKind::kArm;
     const std::uint32_t left = isLimb ? limbStatesAfter(state) & ~ofSide_[sideIndex(*above)] : 0;
@@ -113,6 +118,7 @@ class Declared {
   }
 
   const std::vector<std::optional<NamedRole>>& roles_;
+  const std::vector<JointWords>& words_;
   const JointTree& tree_;
   std::vector<bool> contradicted_;                 // #J
   std::vector<bool> carriesCenter_, carriesLimb_;  // #J, whether such a declared joint is below
