@@ -233,8 +233,13 @@ void RootPlacer::settleLoose(Pose& target, BodyFrame& frame) const {
     const Vec3 way = toParent * Vec3(there - kinematics.parentPosition(loose.joint, frame));
     target.locals[loose.joint].translation = way / kinematics.unit(loose.joint);
     if (loose.turn) target.locals[loose.joint].rotation = (toParent * carrier * *loose.turn).normalized();
-    // At once: what is below may carry the next one, or be loose itself.
-    kinematics.globalsBelow(loose.joint, target, frame);
+    // At once: what is below may carry the next one, or be loose itself. A matched joint keeps the rotation that it has in
+    // the frame.
+    if (loose.turn) {
+      kinematics.globalsBelow(loose.joint, target, frame);
+    } else {
+      kinematics.placeBelow(loose.joint, target, frame);
+    }
   }
 }
 

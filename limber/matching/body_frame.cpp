@@ -40,9 +40,17 @@ void BodyKinematics::update(Index begin, Index end, const Pose& pose, BodyFrame&
 }
 
 void BodyKinematics::place(const Pose& pose, BodyFrame& frame) const {
-  for (Index j = 0; j < skeleton_->jointCount(); ++j) {
-    const Vec3 way = parentRotation(j, frame) * Vec3(units_[j] * pose.locals[j].translation);
-    frame.positions[j] = parentPosition(j, frame) + way;
+  placeRange(0, skeleton_->jointCount(), pose, frame);
+}
+
+void BodyKinematics::placeBelow(Index joint, const Pose& pose, BodyFrame& frame) const {
+  placeRange(joint, ends_[joint], pose, frame);
+}
+
+void BodyKinematics::placeRange(Index begin, Index end, const Pose& pose, BodyFrame& frame) const {
+  for (Index j = begin; j < end; ++j) {
+    const Vec3 offset = parentRotation(j, frame) * Vec3(units_[j] * pose.locals[j].translation);
+    frame.positions[j] = parentPosition(j, frame) + offset;
   }
 }
 

@@ -28,6 +28,7 @@ class BodyKinematics {
   void globalsBelow(Index joint, const Pose& pose, BodyFrame& frame) const;
   // Positions from rotations that are there already, and from the locals' translations.
   void place(const Pose& pose, BodyFrame& frame) const;
+  void placeBelow(Index joint, const Pose& pose, BodyFrame& frame) const;
 
   Quat parentRotation(Index joint, const BodyFrame& frame) const {
     const auto& parent = skeleton_->joints[joint].parent;
@@ -42,6 +43,7 @@ class BodyKinematics {
 
  private:
   void update(Index begin, Index end, const Pose& pose, BodyFrame& frame) const;
+  void placeRange(Index begin, Index end, const Pose& pose, BodyFrame& frame) const;
 
   const Skeleton* skeleton_;
   Quat toBody_;
