@@ -72,32 +72,6 @@ struct NodeTracks {
     }
   }
 
-  // Do the tracks say nothing but what the node's own transform does, as exporters write them that key every node?
-  // They are in the form that decompose() finds.
-  bool repeat(const Transform& own) const {
-    return repeats(translation, Vec3f(own.translation.cast<float>()), own.translation.norm()) &&
-           repeats(rotation, Eigen::Quaternionf(own.rotation.cast<float>()), 1) &&
-           repeats(scale, Vec3f(own.scale.cast<float>()), own.scale.norm());
-  }
-
-  template <typename Value>
-  static bool repeats(const std::optional<Track<Value>>& track, const Value& own, double size) {
-    if (!track) return true;
-    const double least = 1e-6 * std::max(size, 1.0);  // the rounding of single precision
-    for (std::size_t v = 0; v < track->values.size(); ++v) {
-      const bool isTangent = track->interpolation == Interpolation::kCubic && v % 3 != 1;
-      const auto own4 = coefficients(own), value = coefficients(track->values[v]);
-      double off = isTangent ? value.norm() : (value - own4).norm();
-      if constexpr (std::is_same_v<Value, Eigen::Quaternionf>) {
-        if (!isTangent) off = std::min(off, (value + own4).norm());
-      }
-      if (!(off <= least)) return false;
-    }
-    return true;
-  }
-  static Vec3 coefficients(const Vec3f& value) { return value.cast<double>(); }
-  static Eigen::Vector4d coefficients(const Eigen::Quaternionf& value) { return value.coeffs().cast<double>(); }
-
   Transform at(double seconds, const Transform& otherwise) const {
     Transform result = otherwise;
     if (translation) result.translation = sampleTrack(*translation, seconds);
@@ -241,8 +215,7 @@ class ClipReader {
 
   bool movesAbove(Index node) const {
     for (std::optional<Index> n = graph_.parent[node]; n; n = graph_.parent[*n]) {
-      const auto known = nodes_.find(*n);
-      if (known != nodes_.end() && !known->second.repeat(decompose(graph_.local[*n]))) return true;
+      if (nodes_.count(*n) > 0) return true;
     }
     return false;
   }

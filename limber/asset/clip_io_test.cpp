@@ -276,39 +276,6 @@ TEST(ClipIo, FollowsMovingNodesAboveTheRoot) {
   EXPECT_LT(largestError(asset, skeleton, clip, animation, 60), 2e-2);  // slerps of two nodes, cut into sixtieths
 }
 
-// Exporters key every node: what stands still is no movement, and keeps the clip's own keys.
-TEST(ClipIo, ATrackThatRepeatsTheNodesOwnTransformMovesNothing) {
-  Motion motion = randomMotion(3);
-  motion.clips.erase(motion.clips.begin() + 1, motion.clips.end());
-  for (const bool isOwn : {true, false}) {
-    Asset asset = belowArmature(motion);
-    const AssetSkeleton skeleton = readSkeleton(asset);
-    Warnings warnings;
-    const Clip before = readClips(asset, skeleton, warnings).at(0);
-    ASSERT_TRUE(warnings.empty());
-    gltf::Animation& animation = asset.document.animations[0];
-    const Index armature = asset.document.nodeCount() - 1;
-    gltf::Node& node = asset.document.nodes[armature];
-    node.translation = node.translation.value_or(Vec3::Zero());
-    std::vector<float> positions;
-    for (int k = 0; k < 2; ++k) {
-      for (int axis = 0; axis < 3; ++axis)
-        positions.push_back(static_cast<float>((*node.translation)[axis]) + (isOwn ? 0.0f : 0.5f));
-    }
-    const std::vector<float> times = {0, 0.9f};
-    const Index input = addFloatAccessor(asset, times, 1, 0, true), output = addFloatAccessor(asset, positions, 3);
-    const Index sampler = addElement(animation.samplers, {{}, input, output});
-    animation.channels.push_back({{}, sampler, {{}, armature, "translation"}});
-    const Clip after = readClips(asset, skeleton, warnings).at(0);
-    EXPECT_EQ(warnings.empty(), isOwn) << "constant, but elsewhere: a movement";
-    if (!isOwn) continue;
-    EXPECT_EQ(after.duration(), before.duration());
-    ASSERT_EQ(after.rotations.size(), before.rotations.size());
-    for (std::size_t t = 0; t < after.rotations.size(); ++t)
-      EXPECT_EQ(after.rotations[t].times, before.rotations[t].times);
-  }
-}
-
 TEST(ClipIo, LeavesTheRestOfTheDocumentAlone) {
   const Asset before = readAsset(limber::testing::everythingModel().glb(), "everything.glb");
   Asset asset = before.clone();
