@@ -408,12 +408,13 @@ bool isFinger(JointRole role) {
 // Takes away the roles that the tree contradicts.
 class TreeCheck {
  public:
-  TreeCheck(const Skeleton& skeleton, ConventionMatch& match) : tree_(skeleton), match_(match) {}
+  TreeCheck(const Skeleton& skeleton, ConventionMatch& match)
+      : tree_(skeleton), match_(match), rest_(restPositions(skeleton)) {}
 
   // False where the tree is not the convention's.
   bool agrees() {
     decideSpineToHead();
-    if (lacksForefeet()) return false;
+    if (lacksForefeet() || bendsBetween()) return false;
     std::size_t named = 0;
     std::vector<Index> wrong;
     for (Index j = 0; j < tree_.size(); ++j) {
@@ -451,6 +452,26 @@ class TreeCheck {
              : isLast && !hasHead   ? JointRole::kHead
                                     : JointRole::kNeck;
     }
+  }
+
+  // A joint without a name that bends a limb between its upper and its lower bone makes it another kind of limb, as a
+  // leg of three bones.
+  bool bendsBetween() const {
+    constexpr double kOffLine = 0.1;  // fraction of the way by which twist joints stay nearer to the line
+    for (Index lower = 0; lower < tree_.size(); ++lower) {
+      const std::optional<NamedRole>& role = match_.roles[lower];
+      if (!role || (role->role != JointRole::kLowerLeg && role->role != JointRole::kLowerArm)) continue;
+      std::vector<Index> between;
+      std::optional<Index> up = tree_.parent(lower);
+      for (; up && !match_.roles[*up]; up = tree_.parent(*up)) between.push_back(*up);
+      if (!up || (match_.roles[*up]->role != JointRole::kUpperLeg && match_.roles[*up]->role != JointRole::kUpperArm))
+        continue;
+      const Vec3 line = rest_[lower] - rest_[*up];
+      for (const Index joint : between) {
+        if (line.cross(rest_[joint] - rest_[*up]).norm() > kOffLine * line.squaredNorm()) return true;
+      }
+    }
+    return false;
   }
 
   // What is called a foreleg and has no foot may be an arm: then it is another animal.
@@ -501,6 +522,7 @@ class TreeCheck {
 
   JointTree tree_;
   ConventionMatch& match_;
+  std::vector<Vec3> rest_;  // #J
 };
 
 // Mean rest position of the joints of these roles; none where there are none.
