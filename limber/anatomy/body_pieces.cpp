@@ -88,8 +88,7 @@ void BodyPieces::findCenter(const Skeleton& skeleton, const JointTree& tree) {
                     trunkPart->joints.front() != *pelvis;
     // A joint called hips that carries them all is believed.
     for (std::optional<Index> up = pelvis; up; up = tree.parent(*up)) {
-      const bool isHips =
-          anatomy.declaredHips ? up == anatomy.declaredHips : saysHips(readNameOf(skeleton.joints[*up]));
+      const bool isHips = up == anatomy.declaredHips || saysHips(readNameOf(skeleton.joints[*up]));
       if (!isHips) continue;
       pelvis = up;
       pelvisIsGuess = false;

@@ -22,8 +22,7 @@ class HumanoidReader {
     // Where a joint on the ground carries legs and spine, the hips are the one on the way up that is called so.
     std::vector<Index> trunk = body_.trunk;
     const auto isHips = [&](Index joint) {
-      const std::optional<Index>& declared = body_.anatomy.declaredHips;
-      return declared ? declared == joint : saysHips(readNameOf(skeleton_.joints[joint]));
+      return body_.anatomy.declaredHips == joint || saysHips(readNameOf(skeleton_.joints[joint]));
     };
     const auto named = std::find_if(trunk.rbegin(), trunk.rend(), isHips);
     const std::optional<Index> hips = named == trunk.rend() ? body_.pelvis : std::optional(*named);
