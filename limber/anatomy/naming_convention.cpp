@@ -313,7 +313,7 @@ class Finder {
     return partners;
   }
 
-  // What begins the names of many joints, before a word of theirs; the longest first.
+  // What begins the names of many joints, before a word of theirs; the commonest first.
   std::vector<std::string> commonPrefixes() const {
     std::map<std::string, std::size_t> counts;
     for (const PlainName& name : names_) {
@@ -457,7 +457,7 @@ class TreeCheck {
   // A joint without a name that bends a limb between its upper and its lower bone makes it another kind of limb, as a
   // leg of three bones.
   bool bendsBetween() const {
-    constexpr double kOffLine = 0.1;  // fraction of the way by which twist joints stay nearer to the line
+    constexpr double kOffLine = 0.1;  // fraction of the length; twist joints lie nearer to the line
     for (Index lower = 0; lower < tree_.size(); ++lower) {
       const std::optional<NamedRole>& role = match_.roles[lower];
       if (!role || (role->role != JointRole::kLowerLeg && role->role != JointRole::kLowerArm)) continue;
@@ -512,8 +512,8 @@ class TreeCheck {
   bool isBelowAnother(const NamedRole& own, int order) const {
     return std::any_of(match_.roles.begin(), match_.roles.end(), [&](const std::optional<NamedRole>& other) {
       const std::optional<int> before = other ? orderInLimb(other->role) : std::nullopt;
-      return before && *before<order&& * before> 0 && other->side == own.side && other->pair == own.pair &&
-             isOfArm(other->role) == isOfArm(own.role);
+      if (!before || *before == 0 || *before >= order) return false;
+      return other->side == own.side && other->pair == own.pair && isOfArm(other->role) == isOfArm(own.role);
     });
   }
 

@@ -98,8 +98,8 @@ struct ConventionMatch {
   std::vector<Index> contradicted;
 };
 
-// The convention that names most of the skeleton's joints, where it names enough of a body (kMinCoreJoints) and most of
-// what it names is attached as the body's parts are. Any prefix that the names share is passed over, and numbers that
+// The convention that names most of the skeleton's joints, where it names enough of a body (kMinCoreJoints) most of what it
+// names is attached as the body's parts are, and the limbs are those of its bodies (no animal on arms, no third bone). Any prefix that the names share is passed over, and numbers that
 // exporters put behind every name. Cost: a few look-ups a joint, 20 us for 60 joints.
 std::optional<ConventionMatch> findConvention(const Skeleton& skeleton);
 
