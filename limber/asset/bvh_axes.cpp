@@ -12,7 +12,8 @@ namespace limber {
 
 namespace {
 
-constexpr double kClearly = 4;  // people stand within a few degrees of it; a beast's head lies before its feet, too
+constexpr double kUprightSlope =
+    4;  // rise over run: people stand within a few degrees of it; a beast's head lies before its feet, too
 // That are looked at: more of a long recording tell nothing new, and a file may have joints without channels.
 constexpr std::size_t kMaxFrames = 2000, kMaxPositions = 4000000;
 constexpr double kAbout = 0.7;  // cosine of 45 degrees, about
@@ -62,7 +63,7 @@ bool restsAlong(UpAxis up, std::span<const BvhJoint> joints, const BvhEnds& ends
     const double height = positions[*carrier].y();
     if (meanHeight(positions, ends.heads) < height || meanHeight(positions, ends.feet) > height) return false;
   }
-  return upwards.y() > kClearly * std::hypot(upwards.x(), upwards.z());
+  return upwards.y() > kUprightSlope * std::hypot(upwards.x(), upwards.z());
 }
 
 bool standsAlongZ(std::span<const BvhJoint> joints) {
