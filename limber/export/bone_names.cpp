@@ -49,7 +49,8 @@ std::string_view conventionOf(BoneNames column) {
 class Column {
  public:
   explicit Column(BoneNames column)
-      : convention_(*std::ranges::find(namingConventions(), conventionOf(column), &NamingConvention::name)) {}
+      : convention_(*std::find_if(namingConventions().begin(), namingConventions().end(),
+                                  [&](const NamingConvention& one) { return one.name == conventionOf(column); })) {}
 
   // Empty where the convention has none.
   std::string name(JointRole role, Side side, std::size_t number) const {
