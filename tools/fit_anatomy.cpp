@@ -35,7 +35,7 @@ using namespace limber;
 namespace {
 
 struct Settings {
-  int copies = 10, epochs = 24, folds = 0, makerFolds = 0;
+  int copies = 12, epochs = 24, fits = 3, folds = 0, makerFolds = 0;
   double prior = 2e-4;  // of a weight's square, for each example
   double rate = 0.03;
 };
@@ -236,12 +236,30 @@ PartWeights fit(const std::vector<Example>& examples, const Settings& settings) 
       fmt::print(stderr, "epoch {}: loss {:.3f} for each skeleton\n", epoch + 1,
                  loss / static_cast<double>(examples.size()));
   }
+  return weights;
+}
+
+// As they are read again from what is written.
+void roundWeights(PartWeights& weights) {
   for (std::vector<float>* part : {&weights.feature, &weights.follow, &weights.axes}) {
     for (float& weight : *part)
       weight = writtenAs(weight) == '#' ? kNever : static_cast<float>(writtenAs(weight) - 'P') * kStep;
   }
   weights.prepare();
-  return weights;
+}
+
+// What never follows in one of them never does in the mean: all fits have the same labels.
+PartWeights meanOf(const std::vector<PartWeights>& fits) {
+  PartWeights mean = fits.front();
+  for (std::vector<float> PartWeights::*part : {&PartWeights::feature, &PartWeights::follow, &PartWeights::axes}) {
+    for (std::size_t i = 0; i < (mean.*part).size(); ++i) {
+      float sum = 0;
+      for (const PartWeights& fit : fits) sum += (fit.*part)[i];
+      (mean.*part)[i] = sum / static_cast<float>(fits.size());
+    }
+  }
+  roundWeights(mean);
+  return mean;
 }
 
 // Examples of a skeleton: itself and damaged copies, with names and without.
@@ -458,6 +476,8 @@ int main(int argc, char** argv) {
       same.push_back(argv[++i]);
     else if (word == "--copies")
       settings.copies = std::stoi(argv[++i]);
+    else if (word == "--fits")
+      settings.fits = std::stoi(argv[++i]);
     else if (word == "--epochs")
       settings.epochs = std::stoi(argv[++i]);
     else if (word == "--prior")
@@ -503,15 +523,19 @@ int main(int argc, char** argv) {
   }
   fmt::print("{} skeletons in {} groups\n", bodies.size(), groups.size());
   const auto fitTo = [&](const std::vector<const std::vector<std::size_t>*>& chosen) {
-    std::vector<Example> examples;
+    std::vector<PartWeights> fits;
     Random random(7);
-    for (const auto* group : chosen) {
-      const std::size_t most = std::min<std::size_t>(group->size(), 3);
-      for (std::size_t i = 0; i < most; ++i)
-        addExamples(bodies[(*group)[i * group->size() / most]], 1.0 / static_cast<double>(most), settings, random,
-                    examples);
+    for (int f = 0; f < settings.fits; ++f) {
+      std::vector<Example> examples;
+      for (const auto* group : chosen) {
+        const std::size_t most = std::min<std::size_t>(group->size(), 3);
+        for (std::size_t i = 0; i < most; ++i)
+          addExamples(bodies[(*group)[i * group->size() / most]], 1.0 / static_cast<double>(most), settings, random,
+                      examples);
+      }
+      fits.push_back(fit(examples, settings));
     }
-    return fit(examples, settings);
+    return meanOf(fits);
   };
   if (settings.makerFolds > 0) {
     std::map<std::string, std::vector<const std::vector<std::size_t>*>> makers;
