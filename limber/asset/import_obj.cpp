@@ -116,7 +116,7 @@ class ObjPreparer {
         ++result_.invalidFaces;
       } else if (kind == "v" && hasColors) {
         addColored(line);
-      } else {
+      } else if (!kind.empty()) {  // no comments: behind a backslash at their end Assimp goes on
         result_.text += line;
       }
       faces += isFace ? 1 : 0;
