@@ -58,7 +58,7 @@ class FbxClipWriter {
     for (const Index c : chosen) curves.push_back(curvesOf(clips[c]));
     findMoved(chosen, curves);
     for (std::size_t i = 0; i < chosen.size(); ++i) {
-      stacks.push_back(writeClip(chosen[i], frameRateOf(clips[chosen[i]]), curves[i]));
+      stacks.push_back(writeClip(chosen[i], denseFrameRateOf(clips[chosen[i]]), curves[i]));
     }
     return stacks;
   }

@@ -16,7 +16,7 @@ namespace limber {
 struct FbxStack {
   std::string name;
   double duration = 0;  // seconds
-  double rate = 0;      // keys a second
+  double rate = 0;      // frames a second that show its keys and what lies between them, 20 at least
 };
 
 // What moves: the scene's models, and the geometries of those that show a mesh (null for others).

@@ -189,6 +189,12 @@ TEST(EncodeFbx, MetresAndZUp) {
   EXPECT_TRUE((file.world(file.object("Model tip")).linear() * Vec3::UnitZ()).isApprox(-Vec3::UnitY(), 1e-6));
 }
 
+TEST(EncodeFbx, TheFrameRateShowsWhatLiesBetweenKeysThatAreFarApart) {
+  const FbxNode settings = FbxFileView(everything()).record("GlobalSettings");  // keys at 0, 0.5 and 1 s
+  EXPECT_THAT(FbxFileView::property(settings, "TimeMode"), ElementsAre(6));     // 30 a second
+  EXPECT_THAT(FbxFileView::property(settings, "CustomFrameRate"), ElementsAre(-1));
+}
+
 TEST(EncodeFbx, AClipIsAStackWithCurves) {
   const FbxFileView file(everything());
   const FbxNode& stack = file.object("AnimationStack turn");

@@ -17,6 +17,7 @@
 #include "limber/asset/import_fbx_models.h"
 #include "limber/asset/import_fbx_skin.h"
 #include "limber/asset/node_edit.h"
+#include "limber/asset/skin_roots.h"
 #include "limber/asset/unique_names.h"
 
 namespace limber {
@@ -67,6 +68,7 @@ class FbxConverter {
     if (!roots_.empty()) {
       document_.scene = 0;
       document_.scenes.emplace_back().nodes = roots_;
+      joinSkinRoots(document_, names_);
     }
     animations_.addClips(asset_, nodeOf_, shapesInUse_, convention_.scale);
     warnOfConversion();

@@ -17,8 +17,12 @@ constexpr std::array<std::string_view, 3> kKinds = {"Lcl Translation", "Lcl Rota
 constexpr std::array<std::string_view, 3> kAxes = {"d|X", "d|Y", "d|Z"};
 constexpr std::string_view kPercent = "d|DeformPercent";
 
-constexpr double kTolerance = 1e-4;                               // radians, or of what a track moves through
-constexpr std::int64_t kShortestSplit = kFbxTicksPerSecond / 24;  // spans up to here are not divided
+constexpr double kTolerance = 1e-4;  // radians, or of what a track moves through
+// Spans as short as a picture of a film takes are divided for a larger error only, so that curves which were baked keep
+// their number of keys.
+constexpr std::int64_t kShortSpan = kFbxTicksPerSecond / 24;
+constexpr double kShortSpanTolerance = 5;                          // times as large
+constexpr std::int64_t kShortestSplit = kFbxTicksPerSecond / 480;  // spans up to here are not divided
 constexpr int kMostHalvings = 10;
 // Together all clips of a document may have so many keys more than their curves, for each of these and in any case.
 constexpr std::size_t kMorePerKey = 16, kMoreKeys = std::size_t{1} << 20;
@@ -102,8 +106,9 @@ class TrackSampler {
     const std::int64_t length = span.to - span.from, middle = span.from + length / 2;
     if (length <= kShortestSplit || halvings == 0 || budget_ == 0) return;
     const Row half = at_(middle, false);
-    const bool fits = distanceOf(between(from, to, 0.5, isRotation_), half, isRotation_) <= tolerance_ &&
-                      fitsAt(span, from, to, 0.25) && fitsAt(span, from, to, 0.75);
+    const double tolerance = length > kShortSpan ? tolerance_ : kShortSpanTolerance * tolerance_;
+    const bool fits = distanceOf(between(from, to, 0.5, isRotation_), half, isRotation_) <= tolerance &&
+                      fitsAt(span, from, to, 0.25, tolerance) && fitsAt(span, from, to, 0.75, tolerance);
     if (fits) return;
     --budget_;
     addBetween(track, {span.from, middle}, from, half, halvings - 1);
@@ -111,9 +116,9 @@ class TrackSampler {
     addBetween(track, {middle, span.to}, half, to, halvings - 1);
   }
 
-  bool fitsAt(const Span& span, const Row& from, const Row& to, double x) const {
+  bool fitsAt(const Span& span, const Row& from, const Row& to, double x, double tolerance) const {
     const auto ticks = span.from + static_cast<std::int64_t>(x * static_cast<double>(span.to - span.from));
-    return distanceOf(between(from, to, x, isRotation_), at_(ticks, false), isRotation_) <= tolerance_;
+    return distanceOf(between(from, to, x, isRotation_), at_(ticks, false), isRotation_) <= tolerance;
   }
 
   const RowAt& at_;

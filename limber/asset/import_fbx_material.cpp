@@ -48,14 +48,23 @@ std::optional<Bytes> contentOf(const FbxNode& video) {
   if (const auto* bytes = std::get_if<Bytes>(&content->values[0])) {
     return bytes->empty() ? std::nullopt : std::optional<Bytes>(*bytes);
   }
+  // The SDK cuts it into parts that are padded each.
+  Bytes result;
   std::string text;
-  for (std::size_t i = 0; i < content->values.size(); ++i) text += fbxText(*content, i).value_or("");
-  if (text.empty()) return std::nullopt;
+  bool isEmpty = true;
   try {
-    return decodeDataUri("data:;base64," + text).bytes;
+    for (std::size_t i = 0; i < content->values.size(); ++i) {
+      text += fbxText(*content, i).value_or("");
+      if (text.empty() || (text.size() % 4 != 0 && i + 1 < content->values.size())) continue;
+      const Bytes part = decodeDataUri("data:;base64," + text).bytes;
+      result.insert(result.end(), part.begin(), part.end());
+      text.clear();
+      isEmpty = false;
+    }
   } catch (const Error&) {
-    return Bytes();  // told as no picture that is known
+    return Bytes();  // reported as no picture that is known
   }
+  return isEmpty ? std::nullopt : std::optional<Bytes>(std::move(result));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <span>
 #include <utility>
 
 #include "limber/fbx/fbx_values.h"
@@ -47,6 +48,11 @@ class SkinReader {
   std::optional<FbxSkin> read(Index geometry) {
     for (const Index skin : objects_.sources(geometry, "Deformer")) {
       if (objects_.is(skin, "Deformer", "Skin")) {
+        const std::string_view bending = fbxChildText(*objects_[skin].node, "SkinningType");
+        if (bending == "DualQuaternion" || bending == "Blend") {
+          warnings_.add("dual-quaternions", "skins that ask for dual quaternions bend as linear ones",
+                        objects_[geometry].name);
+        }
         for (const Index cluster : objects_.sources(skin, "Deformer")) addCluster(cluster);
       }
     }
@@ -141,9 +147,16 @@ class SkinReader {
   FbxSkin skin_;
 };
 
-FbxShapeTarget readTarget(const FbxNode& node, std::string name, Index pointCount, Warnings& warnings) {
+// `percents`: how much of it each of its points moves; empty: all of it.
+FbxShapeTarget readTarget(const FbxNode& node, std::string name, Index pointCount, std::span<const double> percents,
+                          Warnings& warnings) {
   const std::vector<std::int64_t> points = fbxIntegers(node, "Indexes");
-  const std::vector<double> moves = fbxNumbers(node, "Vertices"), normals = fbxNumbers(node, "Normals");
+  std::vector<double> moves = fbxNumbers(node, "Vertices"), normals = fbxNumbers(node, "Normals");
+  for (std::vector<double>* values : {&moves, &normals}) {
+    for (std::size_t i = 0; !percents.empty() && i < std::min(values->size(), 3 * percents.size()); ++i) {
+      (*values)[i] *= 0.01 * percents[i / 3];
+    }
+  }
   const bool hasNormals = normals.size() >= 3 * points.size() &&
                           std::any_of(normals.begin(), normals.end(), [](double x) { return x != 0; });
   std::vector<std::pair<Index, std::size_t>> order;
@@ -179,14 +192,19 @@ std::optional<FbxSkin> readFbxSkin(const FbxObjects& objects, const FbxModels& m
 
 void FbxShapeChannel::addWeights(double percentage, std::vector<double>& weights) const {
   if (targets.empty()) return;
-  std::size_t next = 0;
-  while (next < targets.size() && fullPercents[next] <= percentage) ++next;
-  // Beyond the last target it goes on as it came there.
-  const std::size_t last = std::min(next, targets.size() - 1);
-  const double before = last == 0 ? 0 : fullPercents[last - 1], span = fullPercents[last] - before;
+  // The bare mesh is a key at 0 among those of the targets. Beyond the last it goes on as it came there.
+  const auto bare =
+      static_cast<std::size_t>(std::lower_bound(fullPercents.begin(), fullPercents.end(), 0.0) - fullPercents.begin());
+  const auto percentOf = [&](std::size_t key) { return key == bare ? 0 : fullPercents[key < bare ? key : key - 1]; };
+  std::size_t next = 1;
+  while (next < targets.size() && percentOf(next) <= percentage) ++next;
+  const double before = percentOf(next - 1), span = percentOf(next) - before;
   const double share = span != 0 ? (percentage - before) / span : 1;
-  if (last > 0) weights[targets[last - 1]] += 1 - share;
-  weights[targets[last]] += share;
+  const auto add = [&](std::size_t key, double weight) {
+    if (key != bare) weights[targets[key < bare ? key : key - 1]] += weight;
+  };
+  add(next - 1, 1 - share);
+  add(next, share);
 }
 
 FbxShapes readFbxShapes(const FbxObjects& objects, Index geometry, FbxBudget& budget, Warnings& warnings) {
@@ -205,10 +223,15 @@ FbxShapes readFbxShapes(const FbxObjects& objects, Index geometry, FbxBudget& bu
       if (!std::isfinite(channel.percent)) channel.percent = 0;
       const std::vector<double> full = fbxNumbers(node, "FullWeights");
       const std::vector<Index> shapes = objects.sources(object, "Geometry");
+      // Of a channel of one shape, Blender writes its vertex group here: a number for each of the shape's points.
+      const bool areOfPoints =
+          shapes.size() == 1 && full.size() == fbxIntegers(*objects[shapes[0]].node, "Indexes").size() &&
+          std::all_of(full.begin(), full.end(), [](double percent) { return std::isfinite(percent); });
       std::vector<std::pair<double, Index>> order;
       for (std::size_t s = 0; s < shapes.size(); ++s) {
         const double otherwise = 100.0 * static_cast<double>(s + 1) / static_cast<double>(shapes.size());
-        order.emplace_back(s < full.size() && std::isfinite(full[s]) && full[s] != 0 ? full[s] : otherwise, shapes[s]);
+        const bool isGiven = !areOfPoints && s < full.size() && std::isfinite(full[s]) && full[s] != 0;
+        order.emplace_back(isGiven ? full[s] : otherwise, shapes[s]);
       }
       std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
       for (const auto& [percent, shape] : order) {
@@ -221,7 +244,9 @@ FbxShapes readFbxShapes(const FbxObjects& objects, Index geometry, FbxBudget& bu
         // A channel of one shape is what users know by its name.
         const std::string& name =
             order.size() == 1 && !objects[object].name.empty() ? objects[object].name : objects[shape].name;
-        result.targets.push_back(readTarget(*objects[shape].node, name, points, warnings));
+        result.targets.push_back(readTarget(*objects[shape].node, name, points,
+                                            areOfPoints ? std::span<const double>(full) : std::span<const double>(),
+                                            warnings));
         budget.spend(12 * result.targets.back().points.size());  // moves and normals in double precision
       }
       if (!channel.targets.empty()) result.channels.push_back(std::move(channel));

@@ -17,6 +17,7 @@
 #include "limber/asset/scene_graph.h"
 #include "limber/asset/shape_name.h"
 #include "limber/asset/testing/gltf_builder.h"
+#include "limber/asset/uri.h"
 #include "limber/core/numbers.h"
 #include "warning_kinds.h"
 
@@ -240,8 +241,27 @@ TEST(ImportFbx7, AnglesAreRightBetweenKeysToo) {
     const Mat3 wanted = turns({0, 30, 0}, {0, 1, 2}) * turns({540 * t, -60 + 70 * t, 0}, {0, 1, 2});
     worst = std::max(worst, Quat(wanted).angularDistance(rotationAt(track, t)));
   }
-  EXPECT_LT(worst, 0.02);  // spans of 1/48 s, in which it turns by 11 degrees
+  EXPECT_LT(worst, 0.001);
   EXPECT_EQ(track.times.back(), 2);
+}
+
+TEST(ImportFbx7, WhatTurnsAboutAPivotGoesRoundIt) {
+  // 270 degrees within eleven frames of a film, five metres away.
+  const double end = 11.0 / 24;
+  const Asset asset =
+      animated(vector("RotationPivot", {5, 0, 0}), "Lcl Rotation", {"", "", curve(20, {0, end}, {0, 270})});
+  const ReadTrack track = trackOf(asset, "translation");
+  double worst = 0;
+  for (std::size_t k = 1; k < track.times.size(); ++k) {
+    for (const double x : {0.25, 0.5, 0.75}) {
+      const double t = track.times[k - 1] + x * (track.times[k] - track.times[k - 1]);
+      const Vec3 pivot(5, 0, 0), wanted = pivot - turns({0, 0, 270 * t / end}, {0, 1, 2}) * pivot;
+      const auto key = [&](std::size_t at) { return Eigen::Map<const Vec3f>(&track.values[3 * at]).cast<double>(); };
+      worst = std::max(worst, (key(k - 1) + x * (key(k) - key(k - 1)) - wanted).norm());
+    }
+  }
+  EXPECT_LT(worst, 0.005);
+  EXPECT_LT(track.times.size(), 100u);
 }
 
 TEST(ImportFbx7, SlopesOfCubicKeysAreHermites) {
@@ -440,6 +460,11 @@ TEST(ImportFbx7, ASkinStandsWhereItWasBoundAndBendsWithItsJoints) {
   const std::vector<float> weights = readFloats(asset, *primitive.attributes.find("WEIGHTS_0"));
   EXPECT_EQ(weights[0], 1);
   EXPECT_EQ(weights[4], 1);  // one half of one alone is all of it
+  // glTF asks for a node above all joints.
+  ASSERT_EQ(skin.joints.size(), 2u);
+  ASSERT_TRUE(graph.parent[skin.joints[0]]);
+  EXPECT_EQ(graph.parent[skin.joints[0]], graph.parent[skin.joints[1]]);
+  EXPECT_TRUE(graph.shown[skin.joints[0]]);
 }
 
 TEST(ImportFbx7, BlendShapesWithOneInBetween) {
@@ -458,6 +483,45 @@ TEST(ImportFbx7, BlendShapesWithOneInBetween) {
   const std::vector<float> moves = readFloats(asset, *mesh.primitives[0].targets[1].find("POSITION"));
   EXPECT_EQ(moves, (std::vector<float>{0, 0, 0, 0, 3, 0, 0, 0, 0}));
   EXPECT_EQ(shapeName(mesh, 0), "half");
+}
+
+// A triangle with one channel of blend shapes; each shape moves all its points up by 1.
+Asset importChannel(const std::vector<std::vector<std::int64_t>>& pointsOfShapes, double percent,
+                    const std::vector<double>& full) {
+  std::string objects =
+      model(1, "Face", "Mesh") + triangle(3) + "Deformer: 5, \"Deformer::b\", \"BlendShape\" {\n}\n" +
+      fmt::format("Deformer: 6, \"SubDeformer::c\", \"BlendShapeChannel\" {{\nDeformPercent: {}\n{}}}\n", percent,
+                  array("FullWeights", full));
+  std::string links = link(1, 0) + link(3, 1) + link(5, 3) + link(6, 5);
+  for (std::size_t s = 0; s < pointsOfShapes.size(); ++s) {
+    const int id = 7 + static_cast<int>(s);
+    std::vector<double> moves;
+    for (std::size_t i = 0; i < pointsOfShapes[s].size(); ++i) moves.insert(moves.end(), {0, 1, 0});
+    objects += fmt::format("Geometry: {}, \"Geometry::s{}\", \"Shape\" {{\n{}{}}}\n", id, s,
+                           wholes("Indexes", pointsOfShapes[s]), array("Vertices", moves));
+    links += link(id, 6);
+  }
+  return importText(objects, links);
+}
+
+TEST(ImportFbx7, FullWeightsOfAShapesPointsAreWhatTheyMoveBy) {
+  const Asset asset = importChannel({{0, 1, 2}}, 100, {50, 25, 0});
+  const gltf::Mesh& mesh = asset.document.meshes.at(0);
+  EXPECT_EQ(mesh.weights, std::vector<double>{1});
+  const std::vector<float> moves = readFloats(asset, *mesh.primitives.at(0).targets.at(0).find("POSITION"));
+  EXPECT_EQ(moves, (std::vector<float>{0, 0.5f, 0, 0, 0.25f, 0, 0, 0, 0}));
+}
+
+TEST(ImportFbx7, TheBareMeshLiesBetweenInBetweensBelowZeroAndAbove) {
+  const auto weights = [](double percent) {
+    return importChannel({{0, 1}, {1, 2}, {0, 1, 2}}, percent, {-50, 50, 100}).document.meshes.at(0).weights;
+  };
+  EXPECT_EQ(weights(0), (std::vector<double>{0, 0, 0}));
+  EXPECT_EQ(weights(-25), (std::vector<double>{0.5, 0, 0}));
+  EXPECT_EQ(weights(-100), (std::vector<double>{2, 0, 0}));
+  EXPECT_EQ(weights(25), (std::vector<double>{0, 0.5, 0}));
+  EXPECT_EQ(weights(75), (std::vector<double>{0, 0.5, 0.5}));
+  EXPECT_EQ(importChannel({{0, 1}}, -25, {-50}).document.meshes.at(0).weights, std::vector<double>{0.5});
 }
 
 TEST(ImportFbx7, ATakeMayHoldABlendShape) {
@@ -551,6 +615,22 @@ TEST(ImportFbx7, TexturesOfOnePictureShareIt) {
   }
 }
 
+TEST(ImportFbx7, APictureMayComeInPartsThatArePaddedEach) {
+  const Bytes png = testing::pngBytes();
+  const std::string first = encodeBase64(ByteSpan(png).first(10)), second = encodeBase64(ByteSpan(png).subspan(10));
+  ASSERT_TRUE(first.ends_with('='));
+  const Asset asset = importLayers(
+      "",
+      "Material: 5, \"Material::A\", \"\" {\n}\n" + texture(7) +
+          fmt::format("Video: 9, \"Video::skin\", \"Clip\" {{\nContent: ,\n\"{}\",\n\"{}\"\n}}\n", first, second),
+      link(5, 1) + link(7, 5, "DiffuseColor") + link(9, 7));
+  EXPECT_TRUE(asset.warnings.empty());
+  ASSERT_EQ(asset.document.images.size(), 1u);
+  const gltf::BufferView& view = asset.document.bufferViews.at(asset.document.images[0].bufferView.value());
+  const auto begin = asset.buffers[0].bytes.begin() + static_cast<std::ptrdiff_t>(view.byteOffset);
+  EXPECT_EQ(Bytes(begin, begin + static_cast<std::ptrdiff_t>(view.byteLength)), png);
+}
+
 TEST(ImportFbx7, TexturesThatAreLeftOutAreTold) {
   const Asset asset = importLayers(
       "", "Material: 5, \"Material::A\", \"\" {\n}\n" + texture(7),
@@ -567,6 +647,16 @@ TEST(ImportFbx7, AnEmptySetOfTextureCoordinatesDoesNotCount) {
                    "Material: 5, \"Material::A\", \"\" {\n}\n" + texture(7, named),
                    link(5, 1) + link(7, 5, "DiffuseColor"), [](std::string_view) { return testing::pngBytes(); });
   EXPECT_EQ(asset.document.materials.at(0).pbrMetallicRoughness->baseColorTexture->texCoord, 0u);
+}
+
+TEST(ImportFbx7, SkinsThatAskForDualQuaternionsAreReported) {
+  const std::string cluster = "Deformer: 6, \"SubDeformer::c\", \"Cluster\" {\n" + wholes("Indexes", {0, 1, 2}) +
+                              array("Weights", {1, 1, 1}) + "}\n";
+  const Asset asset =
+      importText(model(1, "Body", "Mesh") + model(2, "Joint", "LimbNode") + triangle(3) +
+                     "Deformer: 5, \"Deformer::s\", \"Skin\" {\nSkinningType: \"DualQuaternion\"\n}\n" + cluster,
+                 link(1, 0) + link(2, 0) + link(3, 1) + link(5, 3) + link(6, 5) + link(2, 6));
+  EXPECT_EQ(warningKinds(asset.warnings), std::vector<std::string>{"dual-quaternions"});
 }
 
 TEST(ImportFbx7, WhatIsLostIsSaid) {

@@ -2,11 +2,16 @@
 
 #include <assimp/MemoryIOWrapper.h>
 
+#include "limber/asset/import_obj.h"
 #include "limber/asset/side_file.h"
+#include "limber/core/names.h"
 
 namespace limber {
 
 std::optional<Bytes> ImportIo::sideFile(std::string_view path) const {
+  for (const std::string& folder : materialFolders_) {
+    if (std::optional<Bytes> bytes = limber::sideFile(resolver_, folder + std::string(path))) return bytes;
+  }
   return limber::sideFile(resolver_, path);
 }
 
@@ -23,6 +28,12 @@ bool ImportIo::Exists(const char* path) const {
 Assimp::IOStream* ImportIo::Open(const char* path, const char*) {
   if (path == mainName_) return new Assimp::MemoryIOStream(mainFile_.data(), mainFile_.size());
   const Bytes* bytes = cached(path);
+  if (bytes && lowerExtension(path) == ".mtl") {
+    movedTextures_ += countMovedMtlTextures(*bytes);
+    const std::string place(path);
+    const std::size_t slash = place.find_last_of("/\\");
+    if (slash != place.npos) materialFolders_.push_back(place.substr(0, slash + 1));
+  }
   return bytes ? new Assimp::MemoryIOStream(bytes->data(), bytes->size()) : nullptr;
 }
 

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <assimp/IOSystem.hpp>
 
@@ -22,8 +23,12 @@ class ImportIo : public Assimp::IOSystem {
   Assimp::IOStream* Open(const char* path, const char* mode) override;
   void Close(Assimp::IOStream* stream) override;
 
-  // A side file by the path that the model gives: as it is if that is relative, else by its last part beside the model.
+  // A side file by the path that the model or its materials give: as it is if that is relative, beside the materials'
+  // file first; else by its last part.
   std::optional<Bytes> sideFile(std::string_view path) const;
+
+  // Textures of the materials' files that were opened which do not lie as they are.
+  std::size_t movedTextures() const { return movedTextures_; }
 
  private:
   const Bytes* cached(const std::string& path) const;
@@ -31,6 +36,8 @@ class ImportIo : public Assimp::IOSystem {
   ByteSpan mainFile_;
   std::string mainName_;
   const Resolver& resolver_;
+  std::vector<std::string> materialFolders_;  // of the MTL files that were opened; they end with a slash
+  std::size_t movedTextures_ = 0;
   mutable std::map<std::string, std::optional<Bytes>> sideFiles_;
 };
 

@@ -16,6 +16,7 @@
 
 #include "limber/asset/glb.h"
 #include "limber/asset/gltf_document.h"
+#include "limber/asset/import_dae.h"
 #include "limber/asset/import_io.h"
 #include "limber/asset/import_obj.h"
 #include "limber/asset/import_sandbox.h"
@@ -24,6 +25,7 @@
 #include "limber/asset/import_text.h"
 #include "limber/asset/write.h"
 #include "limber/core/names.h"
+#include "limber/core/srgb.h"
 
 namespace limber {
 
@@ -43,12 +45,15 @@ const Format* formatNamed(std::string_view extension) {
 
 constexpr std::size_t kStlHeader = 84;  // bytes of binary STL: a text of 80, and the number of triangles
 
-// A binary STL says nothing of itself but the number of its triangles, 50 bytes each.
-bool isBinaryStl(ByteSpan bytes) {
-  if (bytes.size() < kStlHeader) return false;
+// A binary STL says nothing of itself but the number of its triangles, 50 bytes each. `bytes` has the header.
+std::uint64_t binaryStlLength(ByteSpan bytes) {
   std::uint32_t triangles = 0;
   std::memcpy(&triangles, bytes.data() + kStlHeader - sizeof triangles, sizeof triangles);
-  return bytes.size() == kStlHeader + 50 * std::uint64_t{triangles};
+  return kStlHeader + 50 * std::uint64_t{triangles};
+}
+
+bool isBinaryStl(ByteSpan bytes) {
+  return bytes.size() >= kStlHeader && bytes.size() == binaryStlLength(bytes);
 }
 
 const Format* formatByContent(ByteSpan bytes) {
@@ -116,15 +121,19 @@ void warnOfConversion(Asset& asset, const Convention& convention) {
 }
 
 // Assimp takes STL for binary by its length alone, and otherwise for text. Headers of binary ones may begin with
-// "solid", too, but their count of triangles has a byte that is 0 (up to 16 million of them), as no text has.
-void checkStl(ByteSpan bytes) {
-  if (isBinaryStl(bytes)) return;
+// "solid", too, but their count of triangles has a byte that is 0 (up to 16 million of them), as no text has. Returns
+// the file without what stands behind its triangles.
+ByteSpan checkedStl(ByteSpan bytes) {
+  if (isBinaryStl(bytes)) return bytes;
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   if (text.substr(0, kStlHeader).find('\0') != std::string_view::npos) {
+    if (bytes.size() > kStlHeader && bytes.size() > binaryStlLength(bytes)) {
+      return bytes.first(static_cast<std::size_t>(binaryStlLength(bytes)));
+    }
     throw Error(ErrorCode::kBadData, "its length is not that of the triangles it announces: it is cut off, or no STL");
   }
   const std::size_t start = text.find_first_not_of(" \t\r\n");
-  if (start != std::string_view::npos && text.substr(start, 5) == "solid") return;
+  if (start != std::string_view::npos && text.substr(start, 5) == "solid") return bytes;
   throw Error(ErrorCode::kBadData, "it does not begin with 'solid', as STL in text does");
 }
 
@@ -142,10 +151,79 @@ Error importError(std::string message, const std::string& mainName, std::string_
   return Error(ErrorCode::kBadData, message.empty() ? "the importer does not say why" : validUtf8(message));
 }
 
+// Gives the vertices the colours that prepareObj put aside.
+void restoreObjColors(aiScene& scene, const ObjText& obj) {
+  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+    aiMesh& mesh = *scene.mMeshes[m];
+    for (unsigned v = 0; mesh.mColors[0] && v < mesh.mNumVertices; ++v) {
+      aiColor4D& c = mesh.mColors[0][v];
+      const std::size_t number = static_cast<std::size_t>(c.r) + kObjColorBase * static_cast<std::size_t>(c.g);
+      const std::array<float, 4>& color = obj.colors.at(number);
+      c = aiColor4D(color[0], color[1], color[2], color[3]);
+    }
+  }
+}
+
+// The colours of all vertices as glTF has them. Files have them as sRGB; where any is above 1 they are bytes. Vertices
+// without one are white.
+void convertColors(aiScene& scene) {
+  std::vector<aiColor4D*> colors;
+  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+    const aiMesh& mesh = *scene.mMeshes[m];
+    for (unsigned set = 0; set < mesh.GetNumColorChannels(); ++set) {
+      for (unsigned v = 0; v < mesh.mNumVertices; ++v) colors.push_back(&mesh.mColors[set][v]);
+    }
+  }
+  float most = 0, mostAlpha = 0;
+  for (const aiColor4D* c : colors) {
+    for (const float x : {c->r, c->g, c->b}) most = x > most ? x : most;
+    mostAlpha = c->a > mostAlpha ? c->a : mostAlpha;
+  }
+  const auto unit = [](float x, float largest) {
+    if (!std::isfinite(x)) return 1.0;
+    return std::clamp(largest > 1 ? x / 255.0 : double{x}, 0.0, 1.0);
+  };
+  for (aiColor4D* c : colors) {
+    for (float* x : {&c->r, &c->g, &c->b}) *x = static_cast<float>(linearOf(unit(*x, most)));
+    c->a = static_cast<float>(unit(c->a, mostAlpha));
+  }
+}
+
+// What Assimp is given of a file, and what is known of it beside.
+struct Prepared {
+  ByteSpan raw;  // for Assimp where there is no text for it
+  ObjText obj;
+  DaeText dae;
+  std::size_t trailing = 0;  // bytes that are left out
+
+  ByteSpan bytes() const { return !obj.text.empty() ? asBytes(obj.text) : !dae.text.empty() ? asBytes(dae.text) : raw; }
+};
+
+Prepared prepare(ByteSpan bytes, std::string_view extension) {
+  Prepared result;
+  result.raw = extension == "stl" ? checkedStl(bytes) : bytes;
+  result.trailing = bytes.size() - result.raw.size();
+  if (extension == "obj") result.obj = prepareObj(bytes);
+  if (extension == "dae") result.dae = prepareDae(bytes);
+  return result;
+}
+
+void warnOfPrepared(Asset& asset, const Prepared& file, std::size_t movedTextures) {
+  asset.warnings.add("loose-vertices", "vertices that no face uses are left out", {}, file.obj.looseVertices);
+  asset.warnings.add("invalid-faces", "faces that name vertices that are not there are left out", {},
+                     file.obj.invalidFaces);
+  asset.warnings.add("texture-transforms", "textures that are moved, turned or scaled lie as if they were not", {},
+                     movedTextures);
+  asset.warnings.add("key-interpolation",
+                     "tracks with steps or curves between their keys (STEP, BEZIER, ...) go straight from key to key",
+                     {}, file.dae.curvedSamplers);
+  asset.warnings.add("trailing-bytes", "bytes behind the last triangle are left out", {}, file.trailing);
+}
+
 Asset readWithAssimp(ByteSpan bytes, std::string_view name, const Format& format, const Resolver& resolver) {
-  if (format.extension == std::string_view("stl")) checkStl(bytes);
+  const Prepared file = prepare(bytes, format.extension);
   const std::string mainName = std::string("model.") + format.extension;
-  auto* io = new ImportIo(bytes, mainName, resolver);
+  auto* io = new ImportIo(file.bytes(), mainName, resolver);
   Assimp::Importer importer;
   importer.SetIOHandler(io);                                            // owns it from here
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);  // no made-up mesh where there is only motion
@@ -154,10 +232,13 @@ Asset readWithAssimp(ByteSpan bytes, std::string_view name, const Format& format
 
   auto& edited = const_cast<aiScene&>(*scene);  // the importer owns it and is done with it
   if (format.extension == std::string_view("stl")) dropNormals(edited);
+  restoreObjColors(edited, file.obj);
+  convertColors(edited);
   Convention convention;
   if (format.extension == std::string_view("dae")) convention = daeConvention(edited);
   Asset asset = convertScene(*scene, *io, convention.scale, convention.axes);
   warnOfConversion(asset, convention);
+  warnOfPrepared(asset, file, io->movedTextures());
   return asset;
 }
 
@@ -210,9 +291,6 @@ Asset importModel(ByteSpan bytes, std::string_view name, const Resolver& resolve
         runIsolated([&] { return pack(readWithAssimp(bytes, name, format, resolver)); }, limitsFor(bytes.size()));
     Asset asset = unpack(message);
     asset.format = format.extension;
-    if (asset.format == "obj") {
-      asset.warnings.add("loose-vertices", "vertices that no face uses are left out", {}, countLooseObjVertices(bytes));
-    }
     return asset;
   } catch (const Error& error) {
     throw Error(error.code(), fmt::format("cannot be read as {}: {}", format.label, error.message()), error.where(),

@@ -3,14 +3,17 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <set>
 #include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "limber/asset/accessor.h"
+#include "limber/asset/import_dae.h"
 #include "limber/asset/import_obj.h"
 #include "limber/asset/rig_io.h"
+#include "limber/asset/scene_graph.h"
 #include "limber/asset/testing/document_json.h"
 #include "warning_kinds.h"
 
@@ -111,6 +114,16 @@ TEST(ImportObj, IndicesMayCountBackwards) {
   EXPECT_TRUE(geometry.positions[geometry.triangles[0][1]].isApprox(Vec3f(1, 0, 0)));
 }
 
+TEST(ImportObj, NamesMayBeInLatin1) {
+  const auto nameOf = [](const char* name) {
+    return import(std::string("o ").append(name).append("\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), "t.obj")
+        .document.nodes.at(0)
+        .name;
+  };
+  EXPECT_EQ(nameOf("M\xfcller"), "M\xc3\xbcller");
+  EXPECT_EQ(nameOf("M\xc3\xbcller"), "M\xc3\xbcller");
+}
+
 TEST(ImportObj, CornersWithOtherAttributesStayApart) {
   // Two triangles that share an edge, with a normal of their own each.
   const Asset asset = import(
@@ -170,11 +183,71 @@ TEST(ImportObj, AnIndexOutOfRangeIsRefused) {
   EXPECT_THAT(errorOf("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", "bad.obj").what(), HasSubstr("cannot be read as OBJ"));
 }
 
+TEST(ImportObj, FacesThatNameWhatIsNotThereAreLeftOut) {
+  for (const char* face :
+       {"f 1 2 9", "f 1 2 -9", "f 1 2 0", "f 1//1 2//1 3//7", "f 1 2 99999999999999999999", "f 1 x 2"}) {
+    const std::string text = std::string("v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\n").append(face);
+    const Asset asset = import(text, "t.obj");
+    EXPECT_EQ(collectGeometry(asset).triangles.size(), 1u) << face;
+    EXPECT_EQ(warningKinds(asset.warnings), std::vector<std::string>{"invalid-faces"}) << face;
+  }
+}
+
+TEST(ImportObj, LinesThatABackslashContinuesAreOne) {
+  const Asset asset =
+      import("v 0 0 0\nv 1 \\\r\n 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 \\\n 4 \\\n 3\n# C:\\\nf 1 2 3\n", "t.obj");
+  EXPECT_TRUE(asset.warnings.empty());
+  EXPECT_EQ(collectGeometry(asset).positions.size(), 4u);
+  EXPECT_EQ(collectGeometry(asset).triangles.size(), 3u);
+}
+
+std::vector<float> colorsOf(std::string_view text, std::string_view name) {
+  return attributeOf(import(text, name), "COLOR_0");
+}
+
+TEST(ImportObj, ColorsAreSrgb) {
+  const std::vector<float> colors = colorsOf("v 0 0 0 0.5 0 1\nv 1 0 0 0.5 0 1\nv 0 1 0 0.5 0 1\nf 1 2 3\n", "t.obj");
+  EXPECT_NEAR(colors[0], 0.21404114, 1e-6);
+  EXPECT_EQ(std::vector<float>(colors.begin() + 1, colors.begin() + 4), (std::vector<float>{0, 1, 1}));
+}
+
+TEST(ImportObj, VerticesWithoutAColorAreWhite) {
+  const std::vector<float> colors =
+      colorsOf("v 0 0 0\nv 0 0 1 0 0 1\nv 0 2 0 2\nv 1 0 0 1 0 0\nf 1 2 3\nf 1 4 3\n", "t.obj");
+  EXPECT_EQ(colors, (std::vector<float>{1, 1, 1, 1, 0, 0, 1, 1, 1, 1, 1, 1, 1, 0, 0, 1}));
+}
+
+TEST(ImportObj, AFourthNumberOfAColorIsAlpha) {
+  const std::vector<float> colors = colorsOf("v 0 0 0 1 0 0 0.5\nv 1 0 0 1 0 0 1\nv 0 1 0 0 0 1 0\nf 1 2 3\n", "t.obj");
+  EXPECT_EQ(colors, (std::vector<float>{1, 0, 0, 0.5f, 1, 0, 0, 1, 0, 0, 1, 0}));
+}
+
+TEST(ImportObj, ColorsMayBeBytes) {
+  const std::vector<float> colors =
+      colorsOf("v 0 0 0 255 0 0\nv 1 0 0 128 128 128\nv 0 1 0 0 0 255\nf 1 2 3\n", "t.obj");
+  EXPECT_EQ(colors[0], 1);
+  EXPECT_NEAR(colors[4], 0.2158605, 1e-6);
+}
+
+TEST(ImportObj, PicturesLieBesideTheMaterials) {
+  const std::string png = std::string("\x89PNG\r\n\x1a\n", 8) + "not a real picture";
+  const Asset asset =
+      import("mtllib looks/t.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n", "t.obj",
+             folder({{"looks/t.mtl", "newmtl red\nmap_Kd -s 2 2 1 -o 0.5 0 0 skin.png\n"}, {"looks/skin.png", png}}));
+  EXPECT_EQ(asset.document.images.size(), 1u);
+  EXPECT_EQ(warningKinds(asset.warnings), std::vector<std::string>{"texture-transforms"});
+}
+
+TEST(ImportObj, TexturesThatAreMovedAreCounted) {
+  EXPECT_EQ(countMovedMtlTextures(asBytes("map_Kd -o 1 0 0 a.png\nmap_Kd -s 1 1 1 -o 0 0 0 -bm 2 a.png\nKd 1 1 1\n")),
+            1u);
+}
+
 TEST(ImportObj, LooseVerticesAreCounted) {
-  EXPECT_EQ(countLooseObjVertices(asBytes("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 5 5\nv 6 6 6\nf 1/1 2/2 -3\n")), 2u);
-  EXPECT_EQ(countLooseObjVertices(asBytes("v 0 0 0\r\nv 1 0 0\r\n  l 1 2\r\nv 3 3 3\r\n")), 1u);
-  EXPECT_EQ(countLooseObjVertices(asBytes("v 0 0 0\nv 1 0 0\n")), 0u);  // a cloud of points: nothing is left out
-  EXPECT_EQ(countLooseObjVertices(asBytes("v 0 0 0\nf 99999999999999999999 0 -7 x\n")), 0u);
+  const auto loose = [](const char* text) { return prepareObj(asBytes(text)).looseVertices; };
+  EXPECT_EQ(loose("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 5 5\nv 6 6 6\nf 1/1 2/2 -3\n"), 2u);
+  EXPECT_EQ(loose("v 0 0 0\r\nv 1 0 0\r\n  l 1 2\r\nv 3 3 3\r\n"), 1u);
+  EXPECT_EQ(loose("v 0 0 0\nv 1 0 0\n"), 0u);  // a cloud of points: nothing is left out
   const Asset asset = import("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 5 5\nf 1 2 3\n", "t.obj");
   EXPECT_EQ(warningKinds(asset.warnings), std::vector<std::string>{"loose-vertices"});
 }
@@ -268,6 +341,25 @@ TEST(ImportStl, OneThatIsCutOffIsRefusedInOurWords) {
   EXPECT_THAT(errorOf(bytes.substr(0, 183), "cut.stl").what(), ::testing::HasSubstr("it is cut off, or no STL"));
   EXPECT_THAT(errorOf("SOLID thing\nendsolid\n", "t.stl").what(),
               ::testing::HasSubstr("it does not begin with 'solid', as STL in text does"));
+}
+
+TEST(ImportStl, BytesBehindTheTrianglesAreLeftOut) {
+  std::string bytes(84 + 50 + 2, '\0');
+  bytes[80] = 1;
+  const float corners[] = {0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 2, 0};
+  std::memcpy(bytes.data() + 84, corners, sizeof corners);
+  const Asset asset = import(bytes, "t.stl");
+  EXPECT_DOUBLE_EQ(areaOf(collectGeometry(asset)), 2);
+  EXPECT_EQ(warningKinds(asset.warnings), std::vector<std::string>{"trailing-bytes"});
+  EXPECT_EQ(asset.warnings.items()[0].count, 2u);
+}
+
+TEST(ImportOff, ColorsMayBeBytes) {
+  const std::vector<float> colors =
+      colorsOf("COFF\n3 1 0\n0 0 0 255 0 0 255\n1 0 0 0 128 0 255\n0 1 0 0 0 255 51\n3 0 1 2\n", "t.off");
+  EXPECT_EQ(std::vector<float>(colors.begin(), colors.begin() + 4), (std::vector<float>{1, 0, 0, 1}));
+  EXPECT_NEAR(colors[5], 0.2158605, 1e-6);
+  EXPECT_NEAR(colors[11], 0.2, 1e-6);
 }
 
 TEST(ImportOff, IsRead) {
@@ -415,6 +507,74 @@ TEST(ImportDae, TheClipMovesTheJointInSecondsAndMetres) {
     }
   }
   EXPECT_TRUE(sawTranslation);
+}
+
+std::string replaced(std::string text, std::string_view what, std::string_view by) {
+  const std::size_t at = text.find(what);
+  EXPECT_NE(at, text.npos) << what;
+  return text.replace(at, what.size(), by);
+}
+
+TEST(ImportDae, WhiteSpaceAtTheEndsOfTextsDoesNotCount) {
+  const Asset plain = import(kCharacterDae, "t.dae");
+  const std::pair<const char*, const char*> spaced[] = {
+      {"<vcount>1 1 2 1</vcount>", "<vcount>\n  1 1 2 1\n</vcount>"},
+      {"<v>0 0 0 0 0 1 1 2 1 0</v>", "<v>\r\n\t0 0 0 0 0 1 1 2 1 0\r\n</v>"},
+      {"<p>0 2 1", "<p><!-- > --> \n 0 2 1"},
+      {">1 0.25 0.75<", "> 1 0.25 0.75 <"},
+  };
+  for (const auto& [text, other] : spaced) {
+    const Asset asset = import(replaced(kCharacterDae, text, other), "t.dae");
+    EXPECT_EQ(testing::documentJson(asset), testing::documentJson(plain)) << text;
+    EXPECT_EQ(asset.buffers[0].bytes, plain.buffers[0].bytes) << text;
+  }
+}
+
+TEST(ImportDae, ColorsMayHaveWhiteSpaceAround) {
+  constexpr const char* kEffects =
+      "<library_effects><effect id=\"e\"><profile_COMMON><technique sid=\"c\"><lambert><diffuse><color>\n 0.25 0.5 1 "
+      "1\n"
+      "</color></diffuse></lambert></technique></profile_COMMON></effect></library_effects>"
+      "<library_materials><material id=\"m\" name=\"a > b\"><instance_effect "
+      "url=\"#e\"/></material></library_materials>"
+      "<library_geometries>";
+  const Asset asset = import(replaced(kCharacterDae, "<library_geometries>", kEffects), "t.dae");
+  ASSERT_FALSE(asset.document.materials.empty());
+}
+
+TEST(PrepareDae, LeavesAttributesCommentsAndSectionsAsTheyAre) {
+  constexpr const char* kText = "<a b=\"x >  y\" c='\" > '><!-- > z --><![CDATA[ > ]]></a>";
+  EXPECT_EQ(prepareDae(asBytes(kText)).text, kText);
+  EXPECT_EQ(prepareDae(asBytes("<a>\n 1 2 \n</a> <b/> \n")).text, "<a>1 2</a><b/>");
+  EXPECT_EQ(prepareDae(asBytes("<a> 1")).text, "<a>1");
+}
+
+TEST(ImportDae, KeysWithStepsOrCurvesBetweenAreReported) {
+  for (const char* names : {"STEP STEP", "LINEAR BEZIER", "\n HERMITE\n HERMITE\n"}) {
+    const Asset asset = import(replaced(kCharacterDae, "LINEAR LINEAR", names), "t.dae");
+    EXPECT_THAT(warningKinds(asset.warnings), Contains("key-interpolation")) << names;
+  }
+}
+
+TEST(ImportDae, VerticesWithoutWeightsLeaveTheSkinACommonRoot) {
+  const std::string text = replaced(replaced(kCharacterDae, "<vcount>1 1 2 1<", "<vcount>1 1 0 1<"),
+                                    "<v>0 0 0 0 0 1 1 2 1 0<", "<v>0 0 0 0 1 0<");
+  const Asset asset = import(text, "t.dae");
+  const SceneGraph graph = readSceneGraph(asset.document);
+  ASSERT_EQ(asset.document.skins.size(), 1u);
+  ASSERT_EQ(asset.document.skins[0].joints.size(), 3u);
+  std::set<Index> roots;
+  for (Index joint : asset.document.skins[0].joints) {
+    EXPECT_TRUE(graph.shown[joint]);
+    while (graph.parent[joint]) joint = *graph.parent[joint];
+    roots.insert(joint);
+  }
+  EXPECT_EQ(roots.size(), 1u);
+}
+
+TEST(ImportDae, Utf16IsRefused) {
+  EXPECT_THAT(errorOf(std::string_view("\xff\xfe<\0?\0", 6), "t.dae").what(),
+              HasSubstr("is text in UTF-16 (save it as UTF-8)"));
 }
 
 // --- hostile files ---

@@ -15,6 +15,7 @@
 #include "limber/asset/import_skin.h"
 #include "limber/asset/import_text.h"
 #include "limber/asset/node_edit.h"
+#include "limber/asset/skin_roots.h"
 #include "limber/asset/unique_names.h"
 
 namespace limber {
@@ -37,6 +38,7 @@ class SceneConverter {
     if (!document_.nodes.empty()) {
       document_.scene = 0;
       document_.scenes.emplace_back().nodes = roots_;
+      joinSkinRoots(document_, names_);
     }
     importAnimations(asset_, scene_, nodeOf_, scale_);
     warnOfOthers();

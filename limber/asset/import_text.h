@@ -9,7 +9,7 @@ struct aiString;
 
 namespace limber {
 
-// Valid UTF-8.
+// As UTF-8. A text that is not is taken for Latin-1, as older programs write it.
 std::string textOf(const aiString& text);
 
 }  // namespace limber

@@ -339,6 +339,8 @@ class PlyReader {
 
   void readFaces(const Element& element) {
     if (mesh_.attributes.empty()) refuse("its faces come before its vertices");
+    hasFaceColors_ = hasFaceColors_ || std::any_of(element.properties.begin(), element.properties.end(),
+                                                   [](const Property& property) { return property.name == "red"; });
     std::vector<double> corners, places;
     for (std::uint64_t face = 0; face < element.count; ++face) {
       corners.clear();
@@ -458,6 +460,8 @@ class PlyReader {
     asset.format = "ply";
     gltf::Document& document = asset.document;
     document.about.generator = "limber";
+    asset.warnings.add("face-colors", "colours of faces are left out, those of vertices are read", {},
+                       hasFaceColors_ ? 1 : 0);
     asset.warnings.add("other-elements", "elements other than vertices, faces and strips are left out", {}, others_);
     gltf::Mesh mesh;
     mesh.primitives = addPlainMesh(asset, std::move(mesh_));
@@ -490,6 +494,7 @@ class PlyReader {
   Index vertexCount_ = 0;
   std::vector<float> places_;  // texture coordinates by triangle corner
   std::size_t others_ = 0;
+  bool hasFaceColors_ = false;
   std::vector<Index> polygon_;             // of the face in hand
   std::vector<std::array<Index, 3>> cut_;  // likewise
 };

@@ -113,6 +113,15 @@ TEST(Ply, ColorsAreSrgbInTheFileAndLinearInTheDocument) {
   EXPECT_THAT(colorOf("float", "0.2 1 0 0.2"), ElementsAre(FloatEq(0.033104766f), 1, 0, FloatEq(0.2f)));
 }
 
+TEST(Ply, ColorsOfFacesAreReportedAsLost) {
+  const Asset asset = read(
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nproperty uchar red\nproperty uchar green\n"
+      "property uchar blue\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 255 0 0\n");
+  EXPECT_EQ(collectGeometry(asset).triangles.size(), 1u);
+  EXPECT_EQ(warningKinds(asset.warnings), std::vector<std::string>{"face-colors"});
+}
+
 TEST(Ply, PolygonsAreCutIntoTriangles) {
   const std::string square = header("ascii", 4, "float", 1) + "0 0 0\n2 0 0\n2 2 0\n0 2 0\n4 0 1 2 3\n";
   EXPECT_EQ(collectGeometry(read(square)).triangles.size(), 2u);

@@ -33,7 +33,7 @@ constexpr double kSameScale = 1e-6;  // relative: of one frame's three scales
 
 constexpr std::array kTargets = {
     EngineTarget{kPlainTarget, "as it is", BoneNames::kVrm, NameStyle::kCamel, "", BoneAxes::kAsTheyAre,
-                 FbxUnit::kMetre},
+                 FbxUnit::kCentimetre},
     EngineTarget{"unreal", "the names, root and axes of Unreal Engine 5's mannequin", BoneNames::kUnreal,
                  NameStyle::kSnake, "root", BoneAxes::kUnreal, FbxUnit::kCentimetre},
     EngineTarget{"unity", "the names of Unity's humanoid avatar, and a root", BoneNames::kUnity, NameStyle::kPascal,

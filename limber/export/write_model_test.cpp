@@ -49,6 +49,11 @@ TEST(WriteModel, GivesTheTargetsNames) {
   EXPECT_NE(readSkeleton(asset).skeleton.joints[0].name, "Root");
 }
 
+TEST(WriteModel, WritesFbxInCentimetres) {
+  const Asset asset = everything();
+  EXPECT_EQ(encodeModel(asset, ".fbx").bytes, encodeFbx(asset, {FbxUnit::kCentimetre, FbxUpAxis::kY, {}}).bytes);
+}
+
 TEST(WriteModel, LeavesAPlainModelToTheByte) {
   const Asset asset = everything();
   EXPECT_EQ(encodeModel(asset, ".glb").bytes, writeGlb(asset));

@@ -1,5 +1,6 @@
 #include "limber/fbx/fbx_parse.h"
 
+#include <cmath>
 #include <cstring>
 #include <string>
 
@@ -152,9 +153,22 @@ TEST(FbxParse, TextRecords) {
   EXPECT_EQ(link.values.size(), 3u);
 }
 
+TEST(FbxParse, WhatIsNoNumberInAnArrayIsNan) {
+  const FbxFile file =
+      parse("; FBX\nFBXHeaderExtension:  {\nFBXVersion: 7400\n}\nA: *4 {\na: 1,nan,-1.#IND,-nan(ind)\n}\n");
+  const auto& numbers = std::get<std::vector<double>>(file.root.find("A")->values.at(0));
+  ASSERT_EQ(numbers.size(), 4u);
+  EXPECT_EQ(numbers[0], 1);
+  for (std::size_t i = 1; i < 4; ++i) EXPECT_TRUE(std::isnan(numbers[i])) << i;
+}
+
 TEST(FbxParse, OldVersionsAreRefusedWithARemedy) {
   EXPECT_EQ(codeOf(BinaryWriter{6100}.header() + std::string(13, '\0')), ErrorCode::kUnsupported);
   EXPECT_EQ(codeOf("; FBX 6.1.0 project file\nFBXHeaderExtension:  {\n\tFBXVersion: 6100\n}\n"),
+            ErrorCode::kUnsupported);
+  // They are written otherwise: a list goes on in the next line by its comma.
+  EXPECT_EQ(codeOf("; FBX 5.8.0 project file\nFBXHeaderExtension:  {\n\tFBXVersion: 5800\n}\n"
+                   "Geometry: \"x\" {\n\tVertices: 0,0,0\n\t,0,1,0\n}\n"),
             ErrorCode::kUnsupported);
   EXPECT_EQ(codeOf("; FBX project file\nObjects:  {\n}\n"), ErrorCode::kBadData);
 }

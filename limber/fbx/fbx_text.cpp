@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -40,9 +41,15 @@ class TextParser {
 
   FbxFile parse() {
     FbxFile file;
-    while (skipSpace()) addNode(file.root.children, 1);
-    file.version = version(file.root);
-    checkFbxVersion(file.version);
+    bool isChecked = false;  // at once, for old ones are written otherwise from there on
+    while (skipSpace()) {
+      addNode(file.root.children, 1);
+      if (isChecked || file.root.children.back().name != "FBXHeaderExtension") continue;
+      file.version = version(file.root);
+      checkFbxVersion(file.version);
+      isChecked = true;
+    }
+    if (!isChecked) version(file.root);  // throws
     return file;
   }
 
@@ -162,7 +169,10 @@ class TextParser {
   static std::optional<double> decimal(std::string_view text) {
     const char* at = text.data();
     const std::optional<double> value = parseNumber(at, text.data() + text.size());
-    return at == text.data() + text.size() ? value : std::nullopt;
+    const std::string_view rest = text.substr(static_cast<std::size_t>(at - text.data()));
+    // As Windows prints what is no number: "1.#QNAN", "-nan(ind)".
+    if (value && (rest.starts_with('#') || rest.starts_with('('))) return std::numeric_limits<double>::quiet_NaN();
+    return rest.empty() ? value : std::nullopt;
   }
 
   // *3 { a: 1,2,3 }

@@ -166,6 +166,9 @@ class CrateWriter {
       appendBytes(tokensOf(prim.schemas), list);
       fields.push_back(field("apiSchemas", stored(CrateType::kTokenListOp, 0, list)));
     }
+    if (!prim.displayName.empty()) {
+      fields.push_back(field("displayName", inlined(CrateType::kString, strings_.of(token(prim.displayName)))));
+    }
     std::vector<std::string> properties, children;
     for (const UsdProperty& property : prim.properties) properties.push_back(property.name);
     for (const UsdPrim& child : prim.children) children.push_back(child.name);

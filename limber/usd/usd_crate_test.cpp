@@ -60,6 +60,16 @@ TEST(UsdCrate, HoldsTheTreeOfPrimsAndProperties) {
   EXPECT_EQ(content.fields.at("/Model/first/inner.doubleSided").at("variability") & kPlace, 1u);
 }
 
+TEST(UsdCrate, APrimMayHaveANameForUsers) {
+  UsdStage stage = emptyStage();
+  stage.root.displayName = "\xe8\x85\xb0";
+  const Bytes crate = usdCrate(stage);
+  const CrateContent content = readCrate(crate);
+  const std::uint64_t rep = content.fields.at("/Model").at("displayName");
+  EXPECT_EQ(rep >> 48, 0x400au);  // inlined, of type 10
+  EXPECT_THAT(content.tokens, ::testing::Contains(stage.root.displayName));
+}
+
 TEST(UsdCrate, ListsOfNumbersLieAtMultiplesOfEightOnce) {
   UsdStage stage = emptyStage();
   const std::vector<Vec3f> points = {{1, 2, 3}, {4, 5, 6}};

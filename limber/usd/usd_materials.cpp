@@ -178,6 +178,7 @@ std::vector<std::string> addUsdMaterials(const Asset& asset, const std::vector<U
     std::string name = names.add(usdName(given.empty() ? "material" : given));
     paths.push_back(fmt::format("/{}/{}/{}", kUsdRoot, scope.name, name));
     scope.children.push_back(writer.write(surfaces[m], colored.count(m) > 0, std::move(name), paths.back()));
+    scope.children.back().display(given);
   }
   root.children.push_back(std::move(scope));
   return paths;

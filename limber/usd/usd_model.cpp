@@ -167,7 +167,8 @@ class ModelReader {
     if (mesh.corners.empty()) return;  // points or lines
     const std::string& nodeName = document_.nodes[instance.node].name;
     const std::string& name = nodeName.empty() ? source.name : nodeName;
-    mesh.name = names_.add(usdName(name.empty() ? "mesh" : name));
+    mesh.label = name.empty() ? "mesh" : name;
+    mesh.name = names_.add(usdName(mesh.label));
     mesh.material = primitive.material;
     const bool hasNormals = primitive.attributes.find("NORMAL").has_value();
     for (const Index v : vertices_) {
@@ -178,6 +179,10 @@ class ModelReader {
     readColors(primitive, mesh);
     if (!isStill_) {
       readInfluences(instance.firstVertex, mesh);
+      if (primitive.attributes.find("JOINTS_2")) {
+        model_.warnings.add("many-influences", "of more than eight joints of a vertex only the strongest move it",
+                            mesh.name);
+      }
       readShapes(instance, source, primitive, mesh);
     }
     model_.meshes.push_back(std::move(mesh));
@@ -291,7 +296,8 @@ class ModelReader {
       const bool hasNormals = !mesh.normals.empty() && primitive.targets[s].find("NORMAL");
       const std::vector<Vec3f> normals = hasNormals ? offsetsOf("NORMAL", turn) : std::vector<Vec3f>();
       UsdShape shape;
-      shape.name = shapeNames_.add(usdName(shapeName(source, s)));
+      shape.label = shapeLabels_.add(usdLabel(shapeName(source, s)));
+      shape.name = shapeNames_.add(usdName(shape.label));
       for (std::size_t number = 0; number < vertices_.size(); ++number) {
         const Index v = vertices_[number];
         if (offsets[v].isZero(0) && (!hasNormals || normals[v].isZero(0))) continue;
@@ -336,9 +342,10 @@ class ModelReader {
   std::vector<Vec3f> normals_;
   SkinWeights weights_;
   std::vector<Index> jointNodes_;
-  std::size_t triangle_ = 0;        // the next of the geometry's
-  std::vector<Index> vertices_;     // of the instance that is being read: those that have triangles
-  UniqueNames names_, shapeNames_;  // of meshes; of all their shapes
+  std::size_t triangle_ = 0;              // the next of the geometry's
+  std::vector<Index> vertices_;           // of the instance that is being read: those that have triangles
+  UniqueNames names_;                     // of meshes
+  UniqueNames shapeNames_, shapeLabels_;  // of all their shapes
   UsdModel model_;
 };
 

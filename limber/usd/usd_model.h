@@ -15,7 +15,7 @@ namespace limber {
 
 // A blend shape of one mesh: where its vertices go, those that move alone.
 struct UsdShape {
-  std::string name;                  // unique in the model
+  std::string name, label;           // unique in the model each: an identifier, and as the file has it
   std::vector<int> vertices;         // of the mesh
   std::vector<Vec3f> offsets;        // in the world, as many as vertices
   std::vector<Vec3f> normalOffsets;  // as many, or none
@@ -24,7 +24,7 @@ struct UsdShape {
 
 // A primitive as one node shows it, in the world of the bind pose: the vertices that have triangles.
 struct UsdMesh {
-  std::string name;
+  std::string name, label;                  // an identifier that is unique in the model, and as the file has it
   std::vector<Vec3f> points, normals;       // normals: as many, or none
   std::map<Index, std::vector<Vec2f>> uvs;  // by their sets, as many of each; v grows upwards
   std::vector<Vec3f> colors;                // as many, one for all, or none; times the material's
@@ -40,7 +40,7 @@ struct UsdMesh {
 struct UsdModel {
   std::vector<UsdMesh> meshes;
   Skeleton skeleton;                // in bind pose; no joints: no rig
-  std::vector<std::string> joints;  // #J paths, "root/child"
+  std::vector<std::string> joints;  // #J paths of identifiers, "root/child"
   std::optional<Clip> clip;         // one that lasts
   Pose stance;                      // #J, how the joints stand without it: as the nodes do, or a clip of no length
   // Of text, so that rounding is at most 2.5 millionths of the model's size, and 1 where joints add theirs up.

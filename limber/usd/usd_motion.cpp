@@ -190,7 +190,7 @@ void UsdMotion::addShapes(UsdPrim& prim) const {
   std::vector<std::string> names;
   std::vector<double> moments;
   forEachShape(model_, [&](const UsdShape& shape) {
-    names.push_back(shape.name);
+    names.push_back(shape.label);
     if (shape.weight.times.size() > 1) addMoments(shape.weight.times, shape.weight.interpolation, moments);
   });
   if (names.empty()) return;

@@ -14,6 +14,16 @@ std::string usdName(std::string_view text) {
   return name;
 }
 
+std::string usdLabel(std::string_view text) {
+  std::string label(text);
+  std::erase_if(label, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; });
+  return label;
+}
+
+void UsdPrim::display(const std::string& text) {
+  if (usdName(text) != text) displayName = usdLabel(text);
+}
+
 UsdProperty& UsdPrim::add(std::string propertyType, std::string propertyName, UsdValue value) {
   UsdProperty& property = properties.emplace_back();
   property.type = std::move(propertyType);

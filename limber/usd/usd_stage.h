@@ -17,8 +17,12 @@ inline constexpr std::string_view kUsdRoot = "Model";
 // Those that may stand directly below it beside the meshes.
 inline constexpr const char *kUsdSkeleton = "Skeleton", *kUsdMaterials = "Materials";
 
-// An identifier of USD: letters, digits and underscores, no digit first. Everything else becomes an underscore.
+// An identifier of USD: letters of ASCII, digits and underscores, no digit first. Everything else becomes an
+// underscore.
 std::string usdName(std::string_view text);
+
+// A text without control characters, as each form of a file can hold it.
+std::string usdLabel(std::string_view text);
 
 // What an attribute holds; texts are strings, tokens and paths of assets alike: the attribute's type tells. A vector is
 // an array, even where it has one value. Matrices map columns, as everywhere here; USD's files have them transposed.
@@ -44,7 +48,10 @@ struct UsdPrim {
   std::vector<std::string> schemas;  // that are applied to it
   std::vector<UsdProperty> properties;
   std::vector<UsdPrim> children;
+  std::string displayName{};  // what users know it by, where the name cannot say it; empty: none
 
+  // Keeps the text that the prim's name was made of where that is another.
+  void display(const std::string& text);
   UsdProperty& add(std::string type, std::string name, UsdValue value = {});
   UsdProperty& addUniform(std::string type, std::string name, UsdValue value);
   void relate(std::string name, std::vector<std::string> targets);

@@ -8,6 +8,16 @@ namespace limber {
 
 namespace {
 
+// A label as it stands in quotes.
+std::string escaped(std::string_view label) {
+  std::string result;
+  for (const char c : label) {
+    if (c == '"' || c == '\\') result += '\\';
+    result += c;
+  }
+  return result;
+}
+
 class UsdTextWriter {
  public:
   std::string write(const UsdStage& stage) {
@@ -36,11 +46,13 @@ class UsdTextWriter {
   }
 
   void writePrim(const UsdPrim& prim) {
-    line(fmt::format("def {} \"{}\"{}", prim.type, prim.name, prim.schemas.empty() ? "" : " ("));
+    const bool hasMetadata = !prim.schemas.empty() || !prim.displayName.empty();
+    line(fmt::format("def {} \"{}\"{}", prim.type, prim.name, hasMetadata ? " (" : ""));
     if (!prim.schemas.empty()) {
       line(fmt::format(" prepend apiSchemas = [\"{}\"]", fmt::join(prim.schemas, "\", \"")));
-      line(")");
     }
+    if (!prim.displayName.empty()) line(fmt::format(" displayName = \"{}\"", escaped(prim.displayName)));
+    if (hasMetadata) line(")");
     line("{");
     ++depth_;
     for (const UsdProperty& property : prim.properties) writeProperty(property);
@@ -109,9 +121,10 @@ class UsdTextWriter {
   }
   void append(double value) { fmt::format_to(std::back_inserter(out_), "{:.10g}", value + 0.0); }
   void append(const std::string& value) {
-    const std::string_view quote = type_ != "asset" ? "\"" : value.find('@') == std::string::npos ? "@" : "@@@";
+    const bool isAsset = type_ == "asset";
+    const std::string_view quote = !isAsset ? "\"" : value.find('@') == std::string::npos ? "@" : "@@@";
     out_ += quote;
-    out_ += value;
+    out_ += isAsset ? value : escaped(value);
     out_ += quote;
   }
   void append(const Vec2f& value) { appendTuple(value.x(), value.y()); }

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "limber/asset/stored_archive.h"
+#include "limber/asset/unique_names.h"
 #include "limber/core/names.h"
 #include "limber/usd/usd_crate.h"
 #include "limber/usd/usd_materials.h"
@@ -23,6 +24,12 @@ constexpr int kNormalDecimals = 3, kColorDecimals = 4, kUvDecimals = 5, kWeightD
 UsdPrim skeletonPrim(const UsdModel& model, const UsdMotion& motion) {
   UsdPrim prim{"Skeleton", kUsdSkeleton, {"SkelBindingAPI"}, {}, {}};
   prim.addUniform("token[]", "joints", model.joints);
+  UniqueNames names;
+  std::vector<std::string> jointNames;
+  for (const Joint& joint : model.skeleton.joints) jointNames.push_back(names.add(usdLabel(joint.name)));
+  const bool areNames =
+      std::all_of(jointNames.begin(), jointNames.end(), [](const std::string& name) { return usdName(name) == name; });
+  if (!areNames) prim.addUniform("token[]", "jointNames", std::move(jointNames));
   prim.relate("skel:animationSource", {fmt::format("/{}/{}/Motion", kUsdRoot, kUsdSkeleton)});
   prim.addUniform("matrix4d[]", "bindTransforms", restGlobals(model.skeleton));
   std::vector<Affine> locals;  // without a clip as the joints stand: three.js shows no others
@@ -36,6 +43,7 @@ UsdPrim skeletonPrim(const UsdModel& model, const UsdMotion& motion) {
 
 UsdPrim shapePrim(UsdShape& shape, int decimals) {
   UsdPrim prim{"BlendShape", shape.name, {}, {}, {}};
+  prim.display(shape.label);
   prim.addUniform("vector3f[]", "offsets", std::move(shape.offsets)).decimals = decimals;
   if (!shape.normalOffsets.empty()) {
     prim.addUniform("vector3f[]", "normalOffsets", std::move(shape.normalOffsets)).decimals = kNormalDecimals;
@@ -57,7 +65,7 @@ void addPrimvar(const char* type, const std::string& name, std::vector<Value> va
 void addShapes(std::vector<UsdShape>& shapes, int decimals, UsdPrim& mesh) {
   std::vector<std::string> names, targets;
   for (const UsdShape& shape : shapes) {
-    names.push_back(shape.name);
+    names.push_back(shape.label);
     targets.push_back(fmt::format("/{}/{}/{}", kUsdRoot, mesh.name, shape.name));
   }
   mesh.addUniform("token[]", "skel:blendShapes", std::move(names));
@@ -71,6 +79,7 @@ UsdPrim meshPrim(UsdMesh& mesh, bool hasSkeleton, const gltf::Material* material
   const bool moves = hasSkeleton && (mesh.influences > 0 || !mesh.shapes.empty());
   const std::size_t vertices = mesh.points.size();
   UsdPrim prim{"Mesh", mesh.name, {}, {}, {}};
+  prim.display(mesh.label);
   if (moves) prim.schemas.push_back("SkelBindingAPI");
   if (material != nullptr) prim.schemas.push_back("MaterialBindingAPI");
   if (material != nullptr && material->doubleSided) prim.addUniform("bool", "doubleSided", true);

@@ -1,5 +1,6 @@
 #include "limber/usd/usd_write.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include <gmock/gmock.h>
@@ -161,6 +162,21 @@ TEST(UsdFiles, SeveralRootsGetAJointAbove) {
   EXPECT_THAT(numbersOf(text, "int[] primvars:skel:jointIndices"), ElementsAre(1, 1, 2, 2));
 }
 
+TEST(UsdFiles, MoreThanEightJointsOfAVertexAreReported) {
+  Asset asset = everything();
+  gltf::Attributes& attributes = asset.document.meshes.at(0).primitives.at(0).attributes;
+  for (const char* set : {"1", "2"}) {
+    attributes.set(std::string("JOINTS_") + set, attributes.find("JOINTS_0").value());
+    attributes.set(std::string("WEIGHTS_") + set, attributes.find("WEIGHTS_0").value());
+  }
+  const auto isReported = [](const Asset& model) {
+    const std::vector<Warning> warnings = usdFiles(model).warnings.items();
+    return std::any_of(warnings.begin(), warnings.end(), [](const Warning& w) { return w.kind == "many-influences"; });
+  };
+  EXPECT_TRUE(isReported(asset));
+  EXPECT_FALSE(isReported(everything()));
+}
+
 TEST(UsdFiles, ScalesThatStandStillGoIntoTheFrames) {
   SceneBuilder scene;
   const Index mesh = scene.addTetrahedron();
@@ -248,6 +264,24 @@ TEST(UsdFiles, AnimatedNodesWithoutASkinAreJointsToo) {
   EXPECT_THAT(text, HasSubstr("uniform token[] joints = [\"lid\"]"));
   EXPECT_THAT(text, HasSubstr("float3[] translations.timeSamples"));
   EXPECT_EQ(numbersOf(text, "int[] primvars:skel:jointIndices").size(), 4u);
+}
+
+TEST(UsdFiles, NamesThatAreNoIdentifiersStandBeside) {
+  Asset asset = everything();
+  const std::string name = "\xe8\x85\xb0";
+  for (gltf::Node& node : asset.document.nodes) node.name = name;
+  asset.document.meshes.at(0).name = name;
+  asset.document.meshes[0].extras = gltf::KeptJson(Json{{"targetNames", {"a \"b\" \\"}}});
+  asset.document.materials.at(0).name = "skin\n.1";
+  const std::string text = textOf(asset);
+  EXPECT_THAT(text, HasSubstr("uniform token[] joints = [\"_\",\"_/__2\"]"));
+  EXPECT_THAT(text, HasSubstr("uniform token[] jointNames = [\"" + name + "\",\"" + name + "_2\"]"));
+  EXPECT_EQ(timesIn(text, "displayName = \"" + name + "\""), 1u);  // of the mesh
+  EXPECT_EQ(timesIn(text, "displayName = \"skin.1\""), 1u);
+  EXPECT_THAT(text, HasSubstr("displayName = \"a \\\"b\\\" \\\\\""));
+  EXPECT_EQ(timesIn(text, "[\"a \\\"b\\\" \\\\\"]"), 2u);  // blendShapes of the mesh and of the animation
+  EXPECT_THAT(textOf(everything()), Not(HasSubstr("displayName")));
+  EXPECT_THAT(textOf(everything()), Not(HasSubstr("jointNames")));
 }
 
 TEST(UsdFiles, OneClipAFileAndANameThatIsThere) {
