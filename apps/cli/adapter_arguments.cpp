@@ -14,6 +14,7 @@ void AdapterArguments::addFolderTo(CLI::App& command) {
   command
       .add_option("--adapter-folder", folders,
                   "look here first for NAME.json, which tells how a program of yours is run (docs/adapters.md)")
+      ->check(notForPlans())
       ->type_name("FOLDER")
       ->allow_extra_args(false);
 }
@@ -21,6 +22,7 @@ void AdapterArguments::addFolderTo(CLI::App& command) {
 void AdapterArguments::addTo(CLI::App& command) {
   addFolderTo(command);
   command.add_option("--adapter", files, "such a file, under its name without .json")
+      ->check(notForPlans())
       ->type_name("FILE")
       ->allow_extra_args(false);
   command.add_option("--seed", seed, "what such a program is given as {seed} (default: the adapter's)")

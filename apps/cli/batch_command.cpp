@@ -12,6 +12,7 @@
 #include <unistd.h>
 #include <nlohmann/json.hpp>
 
+#include "adapter_arguments.h"
 #include "command.h"
 #include "limber/asset/json_text.h"
 #include "limber/batch/batch_run.h"
@@ -36,6 +37,7 @@ constexpr int kWrongCode = 2, kStoppedCode = kStorageCode;  // exit codes: a wro
 
 struct BatchArguments {
   std::string plan, output, shard = "1/1";
+  AdapterArguments adapters;
   int jobs = 0;  // 0: as many as there are processors for
   bool retries = false, prints = false, quiet = false;
 };
@@ -79,8 +81,8 @@ class BatchLine {
 };
 
 // In a child of the batch.
-int runInChild(const std::vector<std::string>& arguments, BatchWarnings& warnings) {
-  const int code = runProgram(arguments, Caller::kBatch);
+int runInChild(const std::vector<std::string>& arguments, const BatchCall& call, BatchWarnings& warnings) {
+  const int code = runProgram(arguments, &call);
   for (const Warning& warning : givenWarnings().items()) warnings.emplace_back(warning.kind, warning.count);
   return code;
 }
@@ -88,14 +90,15 @@ int runInChild(const std::vector<std::string>& arguments, BatchWarnings& warning
 // Of the plan's command; where it makes no sense alone, with the options of the first entry with which it does. Throws
 // Error kBadData where it makes none with those of many entries either: no entry could be done.
 CallOutline outlineOf(const BatchPlan& plan) {
-  CallOutline outline = outlineCall(plan.command, Caller::kBatch);
+  const BatchCall call{std::string(kBatchOutput)};
+  CallOutline outline = outlineCall(plan.command, call);
   std::set<std::vector<std::string>> tried;
   for (auto entry = plan.entries.begin();
        !outline.problem.empty() && entry != plan.entries.end() && tried.size() < kMostTried; ++entry) {
     if (entry->options.empty() || !tried.insert(entry->options).second) continue;
     std::vector<std::string> words = plan.command;
     words.insert(words.end(), entry->options.begin(), entry->options.end());
-    CallOutline withOptions = outlineCall(words, Caller::kBatch);
+    CallOutline withOptions = outlineCall(words, call);
     if (withOptions.problem.empty()) outline = std::move(withOptions);
   }
   if (outline.problem.empty() && outline.hasOutput &&
@@ -138,7 +141,9 @@ void runPlan(const BatchArguments& arguments) {
     options.shard = parseBatchShard(arguments.shard);
     BatchPlan read = readBatchPlan(arguments.plan, kBatchCommands, arguments.output);
     try {
-      options.takesThreads = outlineOf(read).hasThreads;
+      const CallOutline outline = outlineOf(read);
+      options.takesThreads = outline.hasThreads;
+      options.takesAdapters = outline.hasAdapters;
     } catch (const Error& error) {
       throw error.within(arguments.plan == "-" ? "standard input" : arguments.plan);
     }
@@ -149,7 +154,13 @@ void runPlan(const BatchArguments& arguments) {
   options.outOfMemoryCode = kOutOfMemoryCode;
   options.storageCode = kStorageCode;
   options.retries = arguments.retries;
-  options.command = runInChild;
+  for (const std::filesystem::path& folder : arguments.adapters.allFolders()) {
+    options.adapterFolders.push_back(std::filesystem::absolute(folder).lexically_normal());
+  }
+  options.command = [&options](const std::vector<std::string>& words, const std::filesystem::path& output,
+                               BatchWarnings& warnings) {
+    return runInChild(words, {output.string(), options.adapterFolders}, warnings);
+  };
   TerminalProgress cancel(true);
   BatchLine line(arguments.quiet);
   options.waiting = [&, isTold = arguments.quiet]() mutable {
@@ -266,6 +277,7 @@ void addBatchCommand(CLI::App& program) {
       ->check(CLI::Range(1, 1024).description(""))
       ->type_name("N");
   command->add_flag("--retry", arguments->retries, "do again what failed");
+  arguments->adapters.addFolderTo(*command);
   command->add_flag("--example", arguments->prints, "print a plan that runs as it is, in a folder with models");
   command->add_flag("--quiet,-q", arguments->quiet, "print nothing but errors");
   command->require_subcommand(0, 1);

@@ -38,7 +38,9 @@ TEST_F(Cli, ABatchTellsByItsCodeWhoseFaultItIs) {
 TEST_F(Cli, ABatchEndsWhereNothingCanBeWritten) {
   if (!fs::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full here";
   makeRobot();
-  put("plan.json", batchPlan(R"("robot.glb")", R"("rig", "{input}", "-o", "{output}", "--json", "/dev/full")"));
+  put("plan.json", batchPlan(R"("robot.glb")"));
+  fs::create_directories(folder_ / "out/.limber-batch/records");
+  fs::create_symlink("/dev/full", folder_ / "out/.limber-batch/records/1-of-1.jsonl");
   expectOneLine(run({"batch", "plan.json", "-o", "out", "--quiet"}), 4);
   EXPECT_THAT(run({"batch", "status", "out"}).out, HasSubstr("0 done, 0 failed, 1 open"));
 }
@@ -115,6 +117,64 @@ TEST_F(Cli, WhatAnEntryAddsIsThatEntrysMatterWhereverItStands) {
     }
   }
   EXPECT_EQ(content("second.glb"), bytes);
+}
+
+// Of options in the command, or in an entry.
+struct PlanWords {
+  std::string words;
+  bool isOfEntry;
+};
+std::vector<PlanWords> inBothPlaces(const std::vector<std::string>& each) {
+  std::vector<PlanWords> all;
+  for (const std::string& words : each) {
+    all.push_back({words, false});
+    all.push_back({words, true});
+  }
+  return all;
+}
+
+std::string rigPlan(const PlanWords& words) {
+  const std::string rig = R"("rig", "{input}", "-o", "{output}")";
+  return words.isOfEntry ? batchPlan(R"({"path": "robot.glb", "options": [)" + words.words + "]}", rig)
+                         : batchPlan(R"("robot.glb")", rig + ", " + words.words);
+}
+
+TEST_F(Cli, APlanOfABatchRunsNoProgram) {
+  makeRobot();
+  put("a.json",
+      R"({"limber_adapter": 1, "kind": "rig", "steps": [{"command": ["/bin/sh", "-c", "touch ran", "{input}"], "folder": "."}]})");
+  int folders = 0;
+  for (const PlanWords& words :
+       inBothPlaces({R"("--rigger", "a", "--adapter", "a.json")", R"("--rigger", "a", "--adapter=a.json")",
+                     R"("--rigger", "a", "--adapter-folder", ".")", R"("--rigger", "a", "--adapter-folder=.")"})) {
+    put("plan.json", rigPlan(words));
+    const std::string out = "out" + std::to_string(folders++);
+    EXPECT_EQ(run({"batch", "plan.json", "-o", out, "-q"}).code, words.isOfEntry ? 1 : 2) << words.words;
+    EXPECT_FALSE(fs::exists(folder_ / "ran")) << words.words;
+  }
+  // The user says where programs are, the plan which.
+  put("plan.json", rigPlan({R"("--rigger", "a")", false}));
+  run({"batch", "plan.json", "-o", "mine", "-q", "--adapter-folder", "."});
+  EXPECT_TRUE(fs::exists(folder_ / "ran"));
+}
+
+TEST_F(Cli, APlanOfABatchWritesNothingButOutputs) {
+  makeRobot();
+  put("kept", "mine");
+  int folders = 0;
+  for (const PlanWords& words : inBothPlaces({R"("--json", "kept")", R"("--json=kept")", R"("-o", "kept")"})) {
+    put("plan.json", rigPlan(words));
+    const std::string out = "out" + std::to_string(folders++);
+    EXPECT_EQ(run({"batch", "plan.json", "-o", out, "-q"}).code, words.isOfEntry ? 1 : 2) << words.words;
+    EXPECT_EQ(content("kept"), "mine") << words.words;
+  }
+  for (const char* command : {R"("rig", "{input}", "-o", "kept.glb", "--vrm-name", "{output}")",
+                              R"("retarget", "{input}", "robot.glb", "-o", "{output}", "--save-map", "kept")",
+                              R"("transfer", "robot.glb", "{input}", "-o", "{output}", "--report", "kept")",
+                              R"("evaluate", "templates", "{input}", "-o", "{output}", "--sheet", "kept.png")"}) {
+    put("plan.json", batchPlan(R"("robot.glb")", command));
+    expectOneLine(run({"batch", "plan.json", "-o", "out"}), 2);
+  }
 }
 
 TEST_F(Cli, ABatchBelowItsInputsHasTheSameEntriesAgain) {

@@ -8,6 +8,7 @@
 #include <thread>
 #include <vector>
 
+#include "limber/asset/testing/gltf_builder.h"
 #include "testing/cli_fixture.h"
 
 namespace limber {
@@ -183,6 +184,33 @@ TEST_F(Cli, BadInputIsOneLineAndLeavesNoFile) {
   }
   expectOneLine(run({"rig", "robot.glb", "-o", "nowhere/out.glb"}), 1);
   EXPECT_EQ(files(), before);
+}
+
+TEST_F(Cli, NamesOutOfFilesDoNotCommandTheTerminal) {
+  const std::string name = "\x1b]0;OWNED\x07\x1b[31mred\r\nlimber: forged";
+  testing::GltfBuilder model;
+  const Index times = model.accessor(std::vector<float>{0, 1}, 5126, "SCALAR", 2);
+  model.json["accessors"][times].update({{"min", Json::array({0})}, {"max", Json::array({1})}});
+  const Index turns = model.accessor(std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1}, 5126, "VEC4", 2);
+  model.push("nodes", {{"name", name}});
+  model.push("scenes", {{"nodes", Json::array({0})}});
+  const Json channel = {{"sampler", 0}, {"target", {{"node", 0}, {"path", "rotation"}}}};
+  const Json sampler = {{"input", times}, {"output", turns}};
+  model.push("animations",
+             {{"name", name}, {"channels", Json::array({channel})}, {"samplers", Json::array({sampler})}});
+  const Bytes glb = model.glb();
+  put("a.glb", std::string(glb.begin(), glb.end()));
+  for (const std::vector<std::string>& call :
+       std::vector<std::vector<std::string>>{{"info", "a.glb"},
+                                             {"convert", "a.glb", "-o", "b.glb"},
+                                             {"convert", "a.glb", "-o", "c.glb", "--clip", name}}) {
+    const Result result = run(call);
+    for (const std::string& text : {result.out, result.error}) {
+      for (const char* control : {"\x1b", "\x07", "\r", "\nlimber: forged"}) EXPECT_THAT(text, Not(HasSubstr(control)));
+    }
+  }
+  EXPECT_THAT(run({"info", "a.glb"}).out, HasSubstr("\\x1b]0;OWNED\\x07"));
+  expectOneLine(run({"convert", "a.glb", "-o", "b.glb", "--clip", "none\nlimber: forged"}), 1);
 }
 
 TEST_F(Cli, UnknownNamesListTheKnownOnes) {

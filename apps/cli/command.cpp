@@ -10,11 +10,14 @@
 #include "limber/core/counted.h"
 #include "limber/core/names.h"
 #include "limber/core/parallel.h"
+#include "limber/core/printable.h"
 #include "limber/core/storage_error.h"
 
 namespace limber::cli {
 
 namespace {
+
+constexpr const char* kNotForPlans = "not for plans";  // a validator's name
 
 bool isSamePlace(const std::string& a, const std::string& b) {
   if (a == b) return true;
@@ -46,7 +49,7 @@ void Common::apply() const {
 }
 
 void Account::line(std::string_view text) const {
-  if (!quiet_) fmt::print(toError_ ? stderr : stdout, "{}\n", text);
+  if (!quiet_) fmt::print(toError_ ? stderr : stdout, "{}\n", printable(text));
 }
 
 const Warnings& givenWarnings() {
@@ -59,7 +62,7 @@ void printWarnings(const Warnings& warnings, bool quiet) {
   for (const Warning& warning : warnings.items()) {
     const std::string_view at = warning.count == 1 ? "at" : "first at";
     const std::string where = warning.where.empty() ? "" : fmt::format(", {} {}", at, warning.where);
-    fmt::print(stderr, "warning: {} [{}]{}\n", warningText(warning), warning.kind, where);
+    fmt::print(stderr, "warning: {} [{}]{}\n", printable(warningText(warning)), warning.kind, printable(where));
   }
 }
 
@@ -100,6 +103,19 @@ void checkBeside(const std::string& option, const std::string& path, const std::
   }
 }
 
+CLI::Validator notForPlans() {
+  return CLI::Validator([](std::string&) { return std::string(); }, "", kNotForPlans);
+}
+
+bool isForPlans(CLI::Option& option) {
+  try {
+    option.get_validator(kNotForPlans);
+    return false;
+  } catch (const CLI::OptionNotFound&) {
+    return true;
+  }
+}
+
 CLI::Validator numberIn(double low, double high) {
   return CLI::Validator(
       [low, high](std::string& text) {
@@ -123,15 +139,20 @@ CLI::Validator momentOfClip() {
   return numberIn(0, 1e6);
 }
 
+void printText(std::string_view text) {
+  fmt::print("{}", printableText(text));
+}
+
 void writeText(const std::string& path, const std::string& text) {
-  writeFile(path, asBytes(text));
+  writeFile(path, asBytes(printableText(text)));
 }
 
 void writeTexts(const std::string& pathBeside, const std::string& beside, const std::string& path,
                 const std::string& text) {
+  const std::string plainBeside = printableText(beside), plain = printableText(text);
   std::vector<OutputFile> files;
-  if (!pathBeside.empty()) files.push_back({pathBeside, asBytes(beside)});
-  files.push_back({path, asBytes(text)});
+  if (!pathBeside.empty()) files.push_back({pathBeside, asBytes(plainBeside)});
+  files.push_back({path, asBytes(plain)});
   writeFiles(files);
 }
 

@@ -48,7 +48,8 @@ struct Common {
   void apply() const;  // sets the number of threads
 };
 
-// The account of what was done: on standard output, or on standard error where that carries a file.
+// The account of what was done: on standard output, or on standard error where that carries a file. Names come from
+// files: control characters in a line are shown, not obeyed (printable).
 class Account {
  public:
   Account(bool quiet, std::string_view output) : quiet_(quiet), toError_(output == "-") {}
@@ -75,6 +76,11 @@ void checkOutput(std::string_view path, const std::vector<std::string_view>& ext
 // CLI::ValidationError where it does, by whatever path.
 void checkBeside(const std::string& option, const std::string& path, const std::vector<std::string>& others);
 
+// Marks an option that runs a program of the user's or names what is written beside the output: the user has it, a
+// batch's plan does not.
+CLI::Validator notForPlans();
+bool isForPlans(CLI::Option& option);
+
 // A number from `low` to `high`; CLI::Range lets NaN pass.
 CLI::Validator numberIn(double low, double high);
 // A whole number from 0; CLI11 takes -1 for the largest.
@@ -82,6 +88,9 @@ CLI::Validator seedNumber();
 // A moment of a clip in seconds; one after its end is the end.
 CLI::Validator momentOfClip();
 
+// On standard output. Control characters in it, but for lines and tabs, are shown, not obeyed; so they are by
+// writeText.
+void printText(std::string_view text);
 void writeText(const std::string& path, const std::string& text);
 // Two texts, both or none; the first only where `pathBeside` is not empty.
 void writeTexts(const std::string& pathBeside, const std::string& beside, const std::string& path,

@@ -40,7 +40,7 @@ void runWeights(const WeightsOptions& options) {
   if (options.json) {
     fmt::print("{}\n", dumpReport(toJson(comparison)));
   } else {
-    fmt::print("{}", toText(comparison));
+    printText(toText(comparison));
   }
 }
 
@@ -55,7 +55,7 @@ void runModel(const ModelFile& options) {
   if (options.json) {
     fmt::print("{}\n", dumpReport(toJson(quality)));
   } else {
-    fmt::print("{}", toText(quality));
+    printText(toText(quality));
   }
 }
 
@@ -95,7 +95,7 @@ void runRig(const RigFiles& options) {
   if (options.json) {
     fmt::print("{}\n", dumpReport(toJson(comparison)));
   } else {
-    fmt::print("{}", toText(comparison));
+    printText(toText(comparison));
   }
 }
 
@@ -318,6 +318,7 @@ void addIk(CLI::App& evaluate) {
       ->type_name("NAME")
       ->allow_extra_args(false);
   command->add_option("--plot", options->plots, "write plots of the shares solved and the times there, as SVG")
+      ->check(notForPlans())
       ->type_name("FOLDER");
   command->add_option("-o,--output", options->page, "write a page in Markdown, with the aims beside the figures")
       ->type_name("FILE");
@@ -407,10 +408,12 @@ void addRiggers(CLI::App& evaluate) {
       ->type_name("NAME");
   command
       ->add_option("--sheet", options->sheet, "draw all with their new bones into one picture, in their order (.png)")
+      ->check(notForPlans())
       ->type_name("FILE");
   CLI::Option* each =
       command->add_option("--each", options->each, "with --labels: write the figures of each file, tab separated")
           ->needs(labels)
+          ->check(notForPlans())
           ->type_name("FILE");
   command
       ->add_option("--rigger", options->riggers,

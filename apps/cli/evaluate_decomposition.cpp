@@ -57,6 +57,7 @@ void addDecompositionEvaluation(CLI::App& evaluate) {
       "decomposition", "Bake the clips of rigged characters to moving vertices and find their bones again");
   command->add_option("FOLDER", arguments->folders, "folders of rigged characters with clips")->required();
   command->add_option("--each", arguments->each, "write the figures of each file, tab separated (.tsv)")
+      ->check(notForPlans())
       ->type_name("FILE");
   command->add_option("-o,--output", arguments->output, "the table to write, in Markdown; - is standard output")
       ->type_name("FILE")

@@ -108,7 +108,7 @@ void run(const MotionEvaluationArguments& options) {
     const ShownJoints shownRight = shownJoints(truth.skeleton, right, setup.targetKinematics.toBody());
     metrics.jointError = jointErrorOf(setup, resultPlain.plain(right), toPlain, &shownRight, &shownTo);
   }
-  fmt::print("{}", options.json ? motionMetricsJson(metrics) : motionMetricsText(metrics));
+  printText(options.json ? motionMetricsJson(metrics) : motionMetricsText(metrics));
 }
 
 struct MatrixOptions {
@@ -168,7 +168,9 @@ void addRetargetingEvaluation(CLI::App& evaluate) {
   command->add_option("-o,--output", options->output, "the table to write, in Markdown; - is standard output")
       ->type_name("FILE")
       ->capture_default_str();
-  command->add_option("--each", options->each, "write the figures of each pair, tab separated")->type_name("FILE");
+  command->add_option("--each", options->each, "write the figures of each pair, tab separated")
+      ->check(notForPlans())
+      ->type_name("FILE");
   options->common.addTo(*command);
   command->footer(
       "The measures are those of limber evaluate motion: means over all pairs of a clip and a character, the worst in\n"

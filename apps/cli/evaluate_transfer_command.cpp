@@ -59,6 +59,7 @@ void addTransferEvaluation(CLI::App& evaluate) {
       ->type_name("N")
       ->capture_default_str();
   command->add_option("--each", options->each, "write the figures of each pair, tab separated (.tsv)")
+      ->check(notForPlans())
       ->type_name("FILE");
   command->add_option("-o,--output", options->output, "the table to write, in Markdown; - is standard output")
       ->type_name("FILE")

@@ -8,6 +8,7 @@
 #include "limber/asset/json_text.h"
 #include "limber/asset/read.h"
 #include "limber/core/counted.h"
+#include "limber/core/printable.h"
 #include "limber/evaluate/asset_info.h"
 
 namespace limber::cli {
@@ -104,7 +105,7 @@ Json infoJson(const std::string& file, const AssetInfo& info) {
 }
 
 void printField(std::string_view name, const std::string& value) {
-  fmt::print("{:<16}{}\n", name, value);
+  fmt::print("{:<16}{}\n", name, printable(value));
 }
 
 void printSurface(const AssetInfo& info) {

@@ -12,7 +12,9 @@
 #include <fmt/format.h>
 
 #include "command.h"
+#include "limber/batch/batch_plan.h"
 #include "limber/core/known_error.h"
+#include "limber/core/printable.h"
 #include "limber/core/storage_error.h"
 #include "limber/pipeline/option_spelling.h"
 #include "progress_line.h"
@@ -27,7 +29,7 @@ int fail(std::string_view what, int code = kFailed) {
     fmt::print(stderr, "limber: interrupted\n");
     return kInterrupted;
   }
-  fmt::print(stderr, "limber: {}\n", what);
+  fmt::print(stderr, "limber: {}\n", limber::printable(what));
   return code;
 }
 
@@ -47,7 +49,7 @@ int usage(const CLI::App& program, const std::string& what) {
     at = at->get_subcommands().front();
     command += " " + at->get_name();
   }
-  fmt::print(stderr, "limber: {} (limber{} --help shows how to call it)\n", what, command);
+  fmt::print(stderr, "limber: {} (limber{} --help shows how to call it)\n", limber::printable(what), command);
   return kUsage;
 }
 
@@ -73,20 +75,38 @@ void addCommands(CLI::App& program) {
   addCompletionCommand(program);
 }
 
-void refuseSecondOutput(CLI::App& program) {
+// Lets an option have no other values than these.
+void allowOnly(CLI::Option& option, const std::vector<std::string>& values, const std::string& problem) {
+  option.check(CLI::Validator(
+      [values, problem](std::string& value) {
+        return std::find(values.begin(), values.end(), value) != values.end() ? std::string() : problem;
+      },
+      ""));
+}
+
+// What a batch's plan may say: nothing that runs a program, nor that writes anything but the entry's output.
+void restrictToBatch(CLI::App& program, const limber::cli::BatchCall& batch) {
+  const std::vector<std::string> folders(batch.adapterFolders.begin(), batch.adapterFolders.end());
   for (CLI::App* command : program.get_subcommands({})) {
+    for (CLI::Option* option : command->get_options()) {
+      if (limber::cli::isForPlans(*option)) continue;
+      const bool isFolder = option->check_lname("adapter-folder");
+      allowOnly(*option, isFolder ? folders : std::vector<std::string>(),
+                isFolder ? "is given to limber batch itself, not by a plan"
+                         : "is not for a batch's plan: it runs a program or writes beside the output");
+    }
     if (CLI::Option* output = command->get_option_no_throw("--output")) {
       output->multi_option_policy(CLI::MultiOptionPolicy::Throw);
+      allowOnly(*output, {batch.output}, fmt::format("has to be \"{}\" in a batch's plan", limber::kBatchOutput));
     }
-    refuseSecondOutput(*command);
+    restrictToBatch(*command, batch);
   }
 }
 
-void addCommandsFor(limber::cli::Caller caller, CLI::App& program) {
-  const bool isBatch = caller == limber::cli::Caller::kBatch;
-  if (isBatch) program.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+void addCommandsFor(const limber::cli::BatchCall* batch, CLI::App& program) {
+  if (batch) program.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   addCommands(program);
-  if (isBatch) refuseSecondOutput(program);
+  if (batch) restrictToBatch(program, *batch);
 }
 
 void parseCall(CLI::App& program, const std::vector<std::string>& arguments) {
@@ -119,9 +139,9 @@ std::string wrongCommand(const CLI::App& program, const std::vector<std::string>
 
 namespace limber::cli {
 
-CallOutline outlineCall(const std::vector<std::string>& arguments, Caller caller) {
+CallOutline outlineCall(const std::vector<std::string>& arguments, const BatchCall& batch) {
   CLI::App program;
-  addCommandsFor(caller, program);
+  addCommandsFor(&batch, program);
   program.parse_complete_callback([] { throw CallMakesSense(); });
   CallOutline outline;
   outline.problem = wrongCommand(program, arguments);
@@ -139,21 +159,22 @@ CallOutline outlineCall(const std::vector<std::string>& arguments, Caller caller
   while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
   outline.hasOutput = command->get_option_no_throw("--output") != nullptr;
   outline.hasThreads = command->get_option_no_throw("--threads") != nullptr;
+  outline.hasAdapters = command->get_option_no_throw("--adapter-folder") != nullptr;
   return outline;
 }
 
-int runProgram(const std::vector<std::string>& arguments, Caller caller) {
+int runProgram(const std::vector<std::string>& arguments, const BatchCall* batch) {
   CLI::App program("Makes any 3D model limber: a static mesh goes in, a rigged and skinned character comes out.",
                    "limber");
   program.set_version_flag("--version", "limber " LIMBER_VERSION);
-  addCommandsFor(caller, program);
+  addCommandsFor(batch, program);
   program.footer("limber COMMAND --help shows the options of a command, with an example.");
   if (const std::string problem = wrongCommand(program, arguments); !problem.empty()) return usage(program, problem);
   try {
     try {
       parseCall(program, arguments);
     } catch (const CLI::Success& request) {  // --help, --version
-      if (caller == Caller::kBatch) return usage(program, kAsksForHelp);
+      if (batch) return usage(program, kAsksForHelp);
       program.exit(request);
     }
     flushOutput();

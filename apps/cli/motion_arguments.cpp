@@ -1,6 +1,6 @@
 #include "motion_arguments.h"
 
-#include "archive.h"
+#include "limber/asset/smpl_arrays.h"
 #include "limber/asset/smpl_skeleton.h"
 
 namespace limber::cli {
@@ -9,7 +9,7 @@ namespace {
 
 std::shared_ptr<const NpzFiles> readBody(const std::string& path) {
   const std::string name = std::filesystem::path(path).filename().string();
-  const auto body = std::make_shared<const NpzFiles>(readArchive(readFile(path), name));
+  const auto body = std::make_shared<const NpzFiles>(readSmplArrays(readFile(path), name));
   try {
     smplSkeleton(*body, smplVertices(*body));
   } catch (const Error& error) {

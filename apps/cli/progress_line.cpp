@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "limber/core/printable.h"
+
 namespace limber::cli {
 
 namespace {
@@ -57,7 +59,7 @@ void TerminalProgress::draw(std::string_view stage, double fraction) {
   if (now - startedAt_ < kQuietSeconds || now - drawnAt_ < kRedrawSeconds) return;
   drawnAt_ = now;
   drawn_ = true;
-  fmt::print(stderr, "\r{} {:.0f} %\x1b[K", stage, 100 * fraction);
+  fmt::print(stderr, "\r{} {:.0f} %\x1b[K", printable(stage), 100 * fraction);
   std::fflush(stderr);
 }
 

@@ -292,7 +292,9 @@ void addOptions(CLI::App& command, const std::shared_ptr<RetargetArguments>& opt
   command.add_option("--method", options->retarget.method, "see below")->type_name("NAME")->capture_default_str();
   command.add_option("--map", options->mapFile, "which joints follow which, in JSON (docs/skeleton_map.schema.json)")
       ->type_name("FILE");
-  command.add_option("--save-map", options->saveMapFile, "write that map, to correct and use again")->type_name("FILE");
+  command.add_option("--save-map", options->saveMapFile, "write that map, to correct and use again")
+      ->check(notForPlans())
+      ->type_name("FILE");
   command.add_flag("--unlike-bodies", options->retarget.unlikeBodies,
                    "let limbs without a partner follow others from front to back: forelegs or wings follow arms");
   command

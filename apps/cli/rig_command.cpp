@@ -13,6 +13,7 @@
 #include "limber/asset/json_text.h"
 #include "limber/asset/read.h"
 #include "limber/core/counted.h"
+#include "limber/core/printable.h"
 #include "limber/export/write_model.h"
 #include "limber/pipeline/option_spelling.h"
 #include "limber/pipeline/report_json.h"
@@ -93,7 +94,7 @@ void printStages(const Account& account, const AutoRigReport& report) {
 void printBridged(const AutoRigReport& report) {
   for (std::size_t i = 0; i < std::min(report.bridged.size(), kNodesListed); ++i) {
     const BridgedNode& node = report.bridged[i];
-    fmt::print(stderr, "  bridged in {}: {} of {}\n", node.name, node.bridged,
+    fmt::print(stderr, "  bridged in {}: {} of {}\n", printable(node.name), node.bridged,
                counted(node.vertices, "vertex", "vertices"));
   }
   if (report.bridged.size() > kNodesListed) {
@@ -337,6 +338,7 @@ void addRigCommand(CLI::App& program) {
   command
       ->add_option("--json", options->report,
                    "write a report: stages, seconds, counts, suggestions, warnings; - is standard output")
+      ->check(notForPlans())
       ->type_name("FILE");
   command->add_flag("--strict", options->strict, "take warnings as errors");
   options->adapters.addTo(*command);

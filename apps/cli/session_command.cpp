@@ -1,14 +1,13 @@
 // limber session: what was done in the studio, done again.
 #include <algorithm>
 #include <cctype>
-#include <map>
 #include <memory>
 
 #include <fmt/format.h>
 
-#include "archive.h"
 #include "command.h"
 #include "limber/asset/read.h"
+#include "limber/asset/stored_archive.h"
 #include "limber/core/counted.h"
 #include "limber/core/file.h"
 #include "limber/session/scene.h"
@@ -32,22 +31,20 @@ struct Work {
 constexpr const char* kCommandsInArchive = "commands.json";
 
 Work readWork(const std::string& path) {
-  const Bytes bytes = readFile(path);
+  Bytes bytes = readFile(path);
   const auto parsed = [](ByteSpan text) {
     return commandsFromJson({reinterpret_cast<const char*>(text.data()), text.size()});
   };
   try {
-    if (!isArchive(bytes)) return {parsed(bytes), folderResolver(std::filesystem::path(path).parent_path())};
-    auto files = std::make_shared<const std::map<std::string, Bytes>>(readArchive(bytes, path));
-    const auto list = files->find(kCommandsInArchive);
-    if (list == files->end()) {
+    if (!looksLikeZipArchive(bytes)) return {parsed(bytes), folderResolver(std::filesystem::path(path).parent_path())};
+    const auto kept = std::make_shared<const Bytes>(std::move(bytes));
+    const auto archive = std::make_shared<const ZipArchive>(*kept, path);
+    const std::optional<Bytes> list = archive->find(kCommandsInArchive);
+    if (!list) {
       throw Error(ErrorCode::kBadData, fmt::format("holds no {}", kCommandsInArchive), path,
                   "is it a .limber file, as the studio saves it?");
     }
-    return {parsed(list->second), [files](std::string_view name) -> std::optional<Bytes> {
-              const auto found = files->find(std::string(name));
-              return found == files->end() ? std::nullopt : std::optional(found->second);
-            }};
+    return {parsed(*list), [kept, archive](std::string_view name) { return archive->find(std::string(name)); }};
   } catch (const Error& error) {
     if (error.where().starts_with(path)) throw;
     throw error.within(path);

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "command.h"
+#include "limber/core/printable.h"
 #include "studio/qr_code.h"
 #include "studio/server.h"
 
@@ -41,7 +42,7 @@ void tellOfDevice(const std::string& from, int device, int devices) {
 }
 
 void tellOfSender(const std::string& what) {
-  fmt::print(stderr, "live motion: {}\n", what);
+  fmt::print(stderr, "live motion: {}\n", printable(what));
 }
 
 }  // namespace

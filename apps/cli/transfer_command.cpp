@@ -6,10 +6,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "archive.h"
 #include "command.h"
 #include "limber/asset/json_text.h"
 #include "limber/asset/read.h"
+#include "limber/asset/smpl_arrays.h"
 #include "limber/core/counted.h"
 #include "limber/core/names.h"
 #include "limber/export/write_model.h"
@@ -75,7 +75,7 @@ void printAccount(const TransferArguments& options, const TransferReport& report
 
 Asset readSource(const std::filesystem::path& path) {
   const std::string name = path.filename().string();
-  return lowerExtension(name) == ".npz" ? smplBody(readArchive(readFile(path), name), name) : readAsset(path);
+  return lowerExtension(name) == ".npz" ? smplBody(readSmplArrays(readFile(path), name), name) : readAsset(path);
 }
 
 void runTransferCommand(TransferArguments options) {
@@ -129,6 +129,7 @@ void addTransferCommand(CLI::App& program) {
       ->type_name("N")
       ->capture_default_str();
   command->add_option("--report", options->report, "write what was done, and where the surfaces stay apart, as JSON")
+      ->check(notForPlans())
       ->type_name("FILE");
   command->add_flag("--no-blend-shapes", options->noShapes, "leave the source's blend shapes out");
   command->add_flag("--colors", options->colors,

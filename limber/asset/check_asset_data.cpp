@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,6 +15,13 @@
 namespace limber {
 
 namespace {
+
+// JOINTS_n of one primitive: 64 influences of a vertex. Programs write one or two.
+constexpr std::size_t kMaxInfluenceSets = 16;
+// What the attributes and morph targets of all primitives may take as numbers of four bytes, each time that they are
+// named: a small multiple of what the file stores, since it may store bytes, and a fixed sum, since primitives may
+// share accessors and these may be sparse or of zeros.
+constexpr std::uint64_t kMaxUnpackedPerByte = 4, kMaxUnpackedOfAny = std::uint64_t{1} << 30;
 
 // Neither NaN nor infinite, told from the exponent's bits so that the loop stays simple enough to run on vectors.
 bool allFinite(const std::uint8_t* data, std::size_t count) {
@@ -71,7 +79,9 @@ class DataChecker {
     for (std::size_t m = 0; m < document_.meshes.size(); ++m) {
       const std::vector<gltf::Primitive>& primitives = document_.meshes[m].primitives;
       for (std::size_t p = 0; p < primitives.size(); ++p) {
-        checkPrimitive(primitives[p], fmt::format("meshes[{}].primitives[{}]", m, p));
+        const std::string place = fmt::format("meshes[{}].primitives[{}]", m, p);
+        checkPrimitive(primitives[p], place);
+        checkUnpackedSize(primitives[p], place);
       }
     }
     for (std::size_t i = 0; i < document_.skins.size(); ++i) checkSkin(document_.skins[i], fmt::format("skins[{}]", i));
@@ -93,6 +103,34 @@ class DataChecker {
       failAt(fmt::format("buffers[{}]", i), "has not as many bytes as its byteLength");
     }
     for (Index i = 0; i < document_.bufferViews.size(); ++i) viewLayout(asset_, i);
+  }
+
+  // What readers of the primitive will ask memory and time for.
+  void checkUnpackedSize(const gltf::Primitive& primitive, const std::string& where) {
+    std::size_t sets = 0;
+    const auto add = [&](Index accessor) {
+      const AccessorInfo& info = layouts_[accessor].info;
+      unpacked_ += std::uint64_t{info.count} * info.components * sizeof(float);
+    };
+    for (const auto& [name, accessor] : primitive.attributes) {
+      add(accessor);
+      if (name.starts_with("JOINTS_")) ++sets;
+    }
+    for (const auto& target : primitive.targets) {
+      for (const auto& [name, accessor] : target) add(accessor);
+    }
+    if (sets > kMaxInfluenceSets) {
+      throw Error(ErrorCode::kLimit, fmt::format("has {} sets of weights, more than {}", sets, kMaxInfluenceSets),
+                  where + ".attributes", "bind vertices to fewer joints");
+    }
+    std::uint64_t stored = 0;
+    for (const gltf::Buffer& buffer : document_.buffers) stored += buffer.byteLength;
+    if (unpacked_ <= kMaxUnpackedOfAny + kMaxUnpackedPerByte * stored) return;
+    throw Error(
+        ErrorCode::kLimit,
+        fmt::format("comes to more than {} MB of vertices and blend shapes, which {} bytes of buffers do not explain",
+                    unpacked_ >> 20, stored),
+        where, "take blend shapes out, or do its meshes one by one");
   }
 
   void requireFinite(Index accessor, const std::string& user) {
@@ -272,6 +310,7 @@ class DataChecker {
   const Asset& asset_;
   const gltf::Document& document_;
   std::vector<AccessorLayout> layouts_;                       // #accessors
+  std::uint64_t unpacked_ = 0;                                // bytes, of the primitives so far
   std::vector<bool> finite_;                                  // #accessors: checked and found so
   std::vector<std::optional<Index>> largest_;                 // #accessors, where it was asked for
   std::vector<std::optional<Index>> namedJoint_, usedJoint_;  // #meshes, where it was asked for

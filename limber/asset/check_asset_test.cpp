@@ -1,6 +1,8 @@
 #include <cmath>
 #include <limits>
 
+#include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "limber/asset/accessor.h"
@@ -13,6 +15,7 @@ namespace {
 
 using testing::everythingModel;
 using testing::GltfBuilder;
+using ::testing::HasSubstr;
 
 // Where checkAsset finds something wrong once the JSON pointer's value is replaced; empty if nowhere.
 std::string placeOfFault(const GltfBuilder& model) {
@@ -262,6 +265,39 @@ TEST(CheckAsset, BuffersInMemoryMustMatchTheDocument) {
   EXPECT_THROW(checkAsset(asset), Error);
   asset.buffers.clear();
   EXPECT_THROW(checkAsset(asset), Error);
+}
+
+// Of all its attributes and targets one accessor each, so that the file stays small.
+std::string refusalOfShared(std::size_t vertices, std::size_t sets, std::size_t targets) {
+  GltfBuilder model;
+  const std::vector<float> positions(3 * vertices);
+  const std::vector<std::uint8_t> joints(4 * vertices);
+  const Index place = model.accessor(positions, 5126, "VEC3", vertices);
+  model.json["accessors"][place].update({{"min", Json::array({0, 0, 0})}, {"max", Json::array({0, 0, 0})}});
+  const Index joint = model.accessor(joints, 5121, "VEC4", vertices);
+  const Index weight = model.accessor(std::vector<float>(4 * vertices), 5126, "VEC4", vertices);
+  Json primitive = {{"attributes", {{"POSITION", place}}}};
+  for (std::size_t n = 0; n < sets; ++n) {
+    primitive["attributes"][fmt::format("JOINTS_{}", n)] = joint;
+    primitive["attributes"][fmt::format("WEIGHTS_{}", n)] = weight;
+  }
+  for (std::size_t t = 0; t < targets; ++t) primitive["targets"].push_back({{"POSITION", place}});
+  model.push("meshes", {{"primitives", Json::array({primitive})}});
+  model.push("nodes", {{"mesh", 0}});
+  try {
+    readAsset(model.glb(), "m");
+    return "";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::kLimit);
+    return error.what();
+  }
+}
+
+TEST(CheckAsset, MemoryIsBoundedByWhatTheFileStores) {
+  EXPECT_EQ(refusalOfShared(100, 16, 100), "");
+  EXPECT_THAT(refusalOfShared(100, 17, 0), HasSubstr("17 sets of weights, more than 16"));
+  EXPECT_EQ(refusalOfShared(10000, 0, 8000), "");
+  EXPECT_THAT(refusalOfShared(10000, 0, 10000), HasSubstr("MB of vertices and blend shapes"));
 }
 
 TEST(CheckAsset, EmptyDocumentsAreFine) {

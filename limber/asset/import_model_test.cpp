@@ -15,6 +15,7 @@
 #include "limber/asset/rig_io.h"
 #include "limber/asset/scene_graph.h"
 #include "limber/asset/testing/document_json.h"
+#include "temporary_folder.h"
 #include "warning_kinds.h"
 
 namespace limber {
@@ -155,6 +156,22 @@ TEST(ImportObj, AMissingTextureIsTold) {
       import(kSquareObj, "square.obj", folder({{"looks.mtl", "newmtl red\nKd 1 1 1\nmap_Kd C:/gone/skin.png\n"}}));
   EXPECT_EQ(warningKinds(asset.warnings), std::vector<std::string>{"missing-images"});
   EXPECT_TRUE(asset.document.textures.empty());
+}
+
+TEST(ImportModel, ObjTakesNothingFromOutsideItsFolder) {
+  const testing::TemporaryFolder disk;
+  const auto put = [&](const char* name, std::string_view text) { writeFile(disk.path() / name, asBytes(text)); };
+  std::filesystem::create_directory(disk.path() / "model");
+  put("secret.png", "\x89PNG\r\n\x1a\nSECRET");
+  put("secret.mtl", "newmtl SECRET\nKd 1 0 0\n");
+  const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n";
+  put("model/a.obj", "mtllib a.mtl\nusemtl x\n" + triangle);
+  put("model/a.mtl", "newmtl x\nmap_Kd ../secret.png\n");
+  put("model/b.obj", "mtllib ../secret.mtl\nusemtl SECRET\n" + triangle);
+  EXPECT_TRUE(readAsset(disk.path() / "model/a.obj").document.images.empty());
+  for (const gltf::Material& material : readAsset(disk.path() / "model/b.obj").document.materials) {
+    EXPECT_NE(material.name, "SECRET");
+  }
 }
 
 TEST(ImportObj, NothingOutsideTheFolderIsOpened) {

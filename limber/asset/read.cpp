@@ -15,6 +15,7 @@
 #include "limber/asset/motion_io.h"
 #include "limber/asset/ply.h"
 #include "limber/asset/stored_archive.h"
+#include "limber/asset/uri.h"
 #include "limber/asset/weight_repair.h"
 #include "limber/core/file_view.h"
 #include "limber/core/known_error.h"
@@ -68,11 +69,6 @@ Asset readGltf(ByteSpan bytes, const Resolver& resolver) {
   return asset;
 }
 
-bool looksLikeArchive(ByteSpan bytes) {
-  constexpr std::array<std::uint8_t, 4> kEntry = {'P', 'K', 3, 4};
-  return bytes.size() >= 4 && std::equal(kEntry.begin(), kEntry.end(), bytes.begin());
-}
-
 // An FBX file that a page hands over together with the pictures beside it, which it cannot open one by one.
 Asset readFbxArchive(ByteSpan bytes) {
   const std::map<std::string, Bytes> files = readZipArchive(bytes, {});
@@ -98,7 +94,7 @@ Asset readAny(ByteSpan bytes, std::string_view name, const Resolver& resolver) {
   }
   if (extension == ".gltf") throw Error(ErrorCode::kBadData, "is no glTF: it is not a JSON object");
   if (looksLikeFbx(bytes)) return importFbx(bytes, resolver);
-  if (extension == ".fbx" && looksLikeArchive(bytes)) return readFbxArchive(bytes);
+  if (extension == ".fbx" && looksLikeZipArchive(bytes)) return readFbxArchive(bytes);
   if (extension == ".fbx") throw Error(ErrorCode::kBadData, "is no FBX file: it does not start as one");
   if (looksLikePly(bytes)) return readPly(bytes, resolver);
 #ifdef LIMBER_IMPORT
@@ -124,7 +120,9 @@ Asset motionFileAsset(const Motion& motion, std::string_view name, const char* f
 
 Resolver folderResolver(const fs::path& folder) {
   return [folder](std::string_view path) -> std::optional<Bytes> {
-    const fs::path place = folder / fs::path(std::string(path));
+    const std::string local(path);
+    checkLocalPath(local);
+    const fs::path place = folder / local;
     std::error_code ignored;
     if (!fs::is_regular_file(place, ignored)) return std::nullopt;
     return readFile(place);

@@ -9,11 +9,11 @@
 
 namespace limber {
 
-// Opens what a document refers to: nullopt if there is no such file. `path` is relative, decoded, with '/', and never
-// leads out of the document's folder (limber refuses such references before asking). A browser gives its own.
+// Opens what a document refers to: nullopt if there is no such file. `path` is relative, decoded, with '/'; one that
+// leads out of the document's folder is refused before asking, or by folderResolver. A browser gives its own.
 using Resolver = std::function<std::optional<Bytes>(std::string_view path)>;
 
-// Opens files in and below the folder, for as long as they are plain files.
+// Opens plain files, and links to such, in and below the folder; throws Error kBadData on a path that leads out of it.
 Resolver folderResolver(const std::filesystem::path& folder);
 
 // The file of that name; "-" is standard input (format told from the content). Format by content first (GLB magic,

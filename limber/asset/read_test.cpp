@@ -157,6 +157,38 @@ TEST(ReadAsset, FromDiskWithFilesBeside) {
   EXPECT_EQ(failureOf([&] { readAsset(folder.path() / "none.gltf"); }).code, ErrorCode::kFile);
 }
 
+TEST(ReadAsset, TexturesOfAPlyOutsideTheFolderStayOut) {
+  const TemporaryFolder folder;
+  const auto put = [&](const char* name, std::string_view text) { writeFile(folder.path() / name, asBytes(text)); };
+  std::filesystem::create_directory(folder.path() / "model");
+  writeFile(folder.path() / "secret.png", pngBytes());
+  put("model/a.ply",
+      "ply\nformat ascii 1.0\ncomment TextureFile ../secret.png\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nproperty float s\nproperty float t\nelement face 1\nproperty list uchar int vertex_indices\n"
+      "end_header\n0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2\n");
+  const auto images = [&](const char* name) {
+    return readAsset(folder.path() / "model" / name).document.images.size();
+  };
+  EXPECT_EQ(images("a.ply"), 0u);
+  // Its name alone is looked for beside the model.
+  writeFile(folder.path() / "model/secret.png", pngBytes());
+  EXPECT_EQ(images("a.ply"), 1u);
+}
+
+TEST(ReadAsset, FolderResolverOpensNothingOutsideItsFolder) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder.path() / "model");
+  for (const char* name : {"secret", "model/own"}) writeFile(folder.path() / name, asBytes("x"));
+  const Resolver resolver = folderResolver(folder.path() / "model");
+  EXPECT_TRUE(resolver("own"));
+  EXPECT_TRUE(resolver("./own"));
+  EXPECT_FALSE(resolver("none"));
+  for (const std::string& path : {std::string("../secret"), std::string("a/../../secret"), std::string("..\\secret"),
+                                  (folder.path() / "secret").string(), std::string("C:secret")}) {
+    EXPECT_THROW(resolver(path), Error) << path;
+  }
+}
+
 TEST(ReadAsset, BinaryChunkMayBeLongerThanTheBuffer) {
   GltfBuilder model = everythingModel();
   model.json["buffers"] = Json::array({{{"byteLength", model.binary.size()}}});

@@ -1,12 +1,36 @@
 #include "limber/asset/smpl_arrays.h"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "limber/asset/stored_archive.h"
 #include "limber/core/error.h"
 
 namespace limber {
+
+namespace {
+
+constexpr std::string_view kSmplArrays[] = {
+    // of bodies
+    "J", "J_regressor", "f", "kintree_table", "posedirs", "shapedirs", "v_template", "weights",
+    // of motions
+    "betas", "body_pose", "fps", "frame_rate", "full_pose", "fullpose", "global_orient", "jaw_pose", "left_hand_pose",
+    "leye_pose", "mocap_frame_rate", "mocap_framerate", "pose", "pose_body", "pose_eye", "pose_hand", "pose_jaw",
+    "poses", "reye_pose", "right_hand_pose", "root_orient", "trans", "transl"};
+
+}  // namespace
+
+NpzFiles readSmplArrays(ByteSpan npz, std::string_view name) {
+  return readZipArchive(npz, name, [](std::string_view path) {
+    constexpr std::string_view kExtension = ".npy";
+    if (!path.ends_with(kExtension)) return false;
+    path.remove_suffix(kExtension.size());
+    return std::find(std::begin(kSmplArrays), std::end(kSmplArrays), path) != std::end(kSmplArrays);
+  });
+}
 
 void refuseSmplArray(const std::string& array, std::string what) {
   throw Error(ErrorCode::kBadData, std::move(what), array + ".npy");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "limber/asset/npz.h"
@@ -11,6 +12,10 @@ namespace limber {
 
 // Throws Error kBadData, where() being "array.npy".
 [[noreturn]] void refuseSmplArray(const std::string& array, std::string what);
+
+// The arrays of bodies and motions that limber reads, out of an archive that may hold others: these are not unpacked.
+// Throws as readZipArchive does.
+NpzFiles readSmplArrays(ByteSpan npz, std::string_view name);
 
 // The array of that name of a body (pipeline/smpl_body.h). Throws Error kBadData where there is none; else as npzArray
 // does.

@@ -402,7 +402,7 @@ Motion readSmplMotion(const NpzFiles& arrays, std::string_view name, const SmplO
 }
 
 Motion readSmplMotion(ByteSpan npz, std::string_view name, const SmplOptions& options) {
-  return readSmplMotion(readZipArchive(npz, name), name, options);
+  return readSmplMotion(readSmplArrays(npz, name), name, options);
 }
 
 bool looksLikeNpz(ByteSpan bytes) {

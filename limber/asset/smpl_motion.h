@@ -44,7 +44,7 @@ struct SmplOptions {
 // as readNpy does; where() begins with `name`.
 Motion readSmplMotion(const NpzFiles& arrays, std::string_view name, const SmplOptions& options = {});
 
-// The same from the archive (readZipArchive).
+// The same from the archive (readSmplArrays).
 Motion readSmplMotion(ByteSpan npz, std::string_view name, const SmplOptions& options = {});
 
 // Does it begin as an archive whose first file is an array?

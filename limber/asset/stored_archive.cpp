@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "limber/core/error.h"
 #include "limber/core/inflate.h"
 
 namespace limber {
@@ -18,7 +17,8 @@ namespace {
 constexpr std::uint32_t kLocalFile = 0x04034b50, kDirectoryEntry = 0x02014b50, kDirectoryEnd = 0x06054b50;
 constexpr std::size_t kLocalSize = 30, kEntrySize = 46, kEndSize = 22, kMostComment = 65535;
 constexpr std::uint32_t kStored = 0, kDeflated = 8;  // ways of packing
-constexpr std::size_t kMostUnpacked = 2'000'000'000;
+// Of files together: NumPy's and texts of models are packed some ten times.
+constexpr std::uint64_t kMaxUnpackedOfAny = 64 << 20, kMaxUnpackedPerByte = 32, kMaxUnpacked = 2'000'000'000;
 constexpr std::uint32_t kInZip64 = 0xffffffff;  // in place of a number that stands elsewhere
 
 // CRC-32, the polynomial reversed, a byte at a time by a table.
@@ -41,91 +41,6 @@ class Checksum {
   std::array<std::uint32_t, 256> table_ = {};
 };
 constexpr Checksum kChecksum;
-
-class ZipArchive {
- public:
-  ZipArchive(ByteSpan bytes, std::string_view name) : bytes_(bytes), name_(name) {}
-
-  std::map<std::string, Bytes> files() const {
-    const std::size_t end = directoryEnd();
-    const std::uint64_t count = number(end + 10, 2);
-    std::size_t at = number(end + 16, 4);
-    std::map<std::string, Bytes> files;
-    std::size_t packed = 0;  // entries that share their bytes would make memory grow beyond the archive
-    std::size_t unpacked = 0;
-    for (std::uint64_t i = 0; i < count; ++i) {
-      if (number(at, 4) != kDirectoryEntry) refuse("its directory is damaged");
-      const std::size_t nameSize = number(at + 28, 2);
-      std::string path = text(at + kEntrySize, nameSize);
-      packed += number(at + 20, 4);
-      if (packed > bytes_.size()) refuse("files in it share their bytes");
-      unpacked += number(at + 24, 4);
-      if (unpacked > kMostUnpacked) refuse("holds more than 2 GB", ErrorCode::kLimit);
-      Bytes content = contentOf(at, path);
-      if (!files.emplace(path, std::move(content)).second) refuse(fmt::format("holds '{}' twice", path));
-      at += kEntrySize + nameSize + number(at + 30, 2) + number(at + 32, 2);
-    }
-    return files;
-  }
-
- private:
-  [[noreturn]] void refuse(std::string what, ErrorCode code = ErrorCode::kBadData, std::string remedy = {}) const {
-    throw Error(code, std::move(what), std::string(name_), std::move(remedy));
-  }
-
-  std::uint32_t number(std::size_t at, std::size_t size) const {
-    if (at > bytes_.size() || size > bytes_.size() - at) refuse("is cut off, or no ZIP archive");
-    std::uint32_t value = 0;
-    for (std::size_t i = 0; i < size; ++i) value |= std::uint32_t{bytes_[at + i]} << (8 * i);
-    return value;
-  }
-  std::string text(std::size_t at, std::size_t size) const {
-    if (at > bytes_.size() || size > bytes_.size() - at) refuse("is cut off, or no ZIP archive");
-    return {reinterpret_cast<const char*>(bytes_.data()) + at, size};
-  }
-
-  // Behind it is a comment of any length, whose length it tells.
-  std::size_t directoryEnd() const {
-    for (std::size_t back = kEndSize; back <= bytes_.size() && back <= kEndSize + kMostComment; ++back) {
-      const std::size_t at = bytes_.size() - back;
-      if (number(at, 4) == kDirectoryEnd && number(at + 20, 2) == back - kEndSize) return at;
-    }
-    refuse("is cut off, or no ZIP archive");
-  }
-
-  Bytes contentOf(std::size_t entry, const std::string& path) const {
-    if (number(entry + 8, 2) % 2 == 1) refuse(fmt::format("'{}' in it is encrypted", path), ErrorCode::kUnsupported);
-    const std::uint32_t packed = number(entry + 20, 4), size = number(entry + 24, 4), local = number(entry + 42, 4);
-    const std::uint32_t method = number(entry + 10, 2);
-    if (method != kStored && method != kDeflated) {
-      refuse(fmt::format("'{}' in it is compressed in another way than by deflate", path), ErrorCode::kUnsupported);
-    }
-    if (packed == kInZip64 || size == kInZip64 || local == kInZip64) {
-      refuse("is larger than 4 GB", ErrorCode::kUnsupported);
-    }
-    const auto damaged = [&] { refuse(fmt::format("'{}' in it is damaged", path)); };
-    if (number(local, 4) != kLocalFile) damaged();
-    const std::size_t begin = std::size_t{local} + kLocalSize + number(local + 26, 2) + number(local + 28, 2);
-    if (begin > bytes_.size() || packed > bytes_.size() - begin) refuse("is cut off, or no ZIP archive");
-    const ByteSpan data = bytes_.subspan(begin, packed);
-    if (method == kStored ? size != data.size() : size / kMostInflatedPerByte > data.size()) damaged();
-    Bytes content(size);
-    if (method == kStored) {
-      std::copy(data.begin(), data.end(), content.begin());
-    } else {
-      try {
-        inflate(data, content);
-      } catch (const Error&) {
-        damaged();
-      }
-    }
-    if (kChecksum.of(content) != number(entry + 16, 4)) damaged();
-    return content;
-  }
-
-  ByteSpan bytes_;
-  std::string_view name_;
-};
 
 // Writes the records of an archive.
 class ArchiveWriter {
@@ -204,8 +119,113 @@ class ArchiveWriter {
 
 }  // namespace
 
-std::map<std::string, Bytes> readZipArchive(ByteSpan bytes, std::string_view name) {
-  return ZipArchive(bytes, name).files();
+bool looksLikeZipArchive(ByteSpan bytes) {
+  constexpr std::array<std::uint8_t, 4> kBegin = {'P', 'K', 3, 4};
+  return bytes.size() >= kBegin.size() && std::equal(kBegin.begin(), kBegin.end(), bytes.begin());
+}
+
+ZipArchive::ZipArchive(ByteSpan bytes, std::string_view name) : bytes_(bytes), name_(name) {
+  const std::size_t end = directoryEnd();
+  const std::uint64_t count = number(end + 10, 2);
+  std::size_t at = number(end + 16, 4);
+  std::size_t packed = 0;  // entries that share their bytes would make memory grow beyond the archive
+  for (std::uint64_t i = 0; i < count; ++i) {
+    if (number(at, 4) != kDirectoryEntry) refuse("its directory is damaged");
+    const std::size_t nameSize = number(at + 28, 2);
+    const std::string path = text(at + kEntrySize, nameSize);
+    packed += number(at + 20, 4);
+    if (packed > bytes_.size()) refuse("files in it share their bytes");
+    if (!entries_.emplace(path, Entry{at, number(at + 24, 4)}).second) refuse(fmt::format("holds '{}' twice", path));
+    at += kEntrySize + nameSize + number(at + 30, 2) + number(at + 32, 2);
+  }
+}
+
+std::optional<Bytes> ZipArchive::find(const std::string& path) const {
+  const auto entry = entries_.find(path);
+  if (entry == entries_.end()) return std::nullopt;
+  checkSize(entry->second.unpacked);
+  return contentOf(entry->second.at, path);
+}
+
+std::map<std::string, Bytes> ZipArchive::files(const Asked& isAskedFor) const {
+  std::map<std::string, Bytes> files;
+  std::uint64_t unpacked = 0;
+  for (const auto& [path, entry] : entries_) {
+    if (isAskedFor && !isAskedFor(path)) continue;
+    checkSize(unpacked += entry.unpacked);
+    files.emplace(path, contentOf(entry.at, path));
+  }
+  return files;
+}
+
+std::size_t ZipArchive::maxUnpacked() const {
+  return static_cast<std::size_t>(std::min(kMaxUnpacked, kMaxUnpackedOfAny + kMaxUnpackedPerByte * bytes_.size()));
+}
+
+void ZipArchive::checkSize(std::uint64_t unpacked) const {
+  if (unpacked <= maxUnpacked()) return;
+  refuse(fmt::format("holds more than {} MB, which so small an archive does not explain", maxUnpacked() >> 20),
+         ErrorCode::kLimit);
+}
+
+void ZipArchive::refuse(std::string what, ErrorCode code, std::string remedy) const {
+  throw Error(code, std::move(what), name_, std::move(remedy));
+}
+
+std::uint32_t ZipArchive::number(std::size_t at, std::size_t size) const {
+  if (at > bytes_.size() || size > bytes_.size() - at) refuse("is cut off, or no ZIP archive");
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < size; ++i) value |= std::uint32_t{bytes_[at + i]} << (8 * i);
+  return value;
+}
+
+std::string ZipArchive::text(std::size_t at, std::size_t size) const {
+  if (at > bytes_.size() || size > bytes_.size() - at) refuse("is cut off, or no ZIP archive");
+  return {reinterpret_cast<const char*>(bytes_.data()) + at, size};
+}
+
+// Behind it is a comment of any length, whose length it tells.
+std::size_t ZipArchive::directoryEnd() const {
+  for (std::size_t back = kEndSize; back <= bytes_.size() && back <= kEndSize + kMostComment; ++back) {
+    const std::size_t at = bytes_.size() - back;
+    if (number(at, 4) == kDirectoryEnd && number(at + 20, 2) == back - kEndSize) return at;
+  }
+  refuse("is cut off, or no ZIP archive");
+}
+
+Bytes ZipArchive::contentOf(std::size_t entry, const std::string& path) const {
+  if (number(entry + 8, 2) % 2 == 1) refuse(fmt::format("'{}' in it is encrypted", path), ErrorCode::kUnsupported);
+  const std::uint32_t packed = number(entry + 20, 4), size = number(entry + 24, 4), local = number(entry + 42, 4);
+  const std::uint32_t method = number(entry + 10, 2);
+  if (method != kStored && method != kDeflated) {
+    refuse(fmt::format("'{}' in it is compressed in another way than by deflate", path), ErrorCode::kUnsupported);
+  }
+  if (packed == kInZip64 || size == kInZip64 || local == kInZip64) {
+    refuse("is larger than 4 GB", ErrorCode::kUnsupported);
+  }
+  const auto damaged = [&] { refuse(fmt::format("'{}' in it is damaged", path)); };
+  if (number(local, 4) != kLocalFile) damaged();
+  const std::size_t begin = std::size_t{local} + kLocalSize + number(local + 26, 2) + number(local + 28, 2);
+  if (begin > bytes_.size() || packed > bytes_.size() - begin) refuse("is cut off, or no ZIP archive");
+  const ByteSpan data = bytes_.subspan(begin, packed);
+  if (method == kStored ? size != data.size() : size / kMostInflatedPerByte > data.size()) damaged();
+  Bytes content(size);
+  if (method == kStored) {
+    std::copy(data.begin(), data.end(), content.begin());
+  } else {
+    try {
+      inflate(data, content);
+    } catch (const Error&) {
+      damaged();
+    }
+  }
+  if (kChecksum.of(content) != number(entry + 16, 4)) damaged();
+  return content;
+}
+
+std::map<std::string, Bytes> readZipArchive(ByteSpan bytes, std::string_view name,
+                                            const ZipArchive::Asked& isAskedFor) {
+  return ZipArchive(bytes, name).files(isAskedFor);
 }
 
 Bytes writeStoredArchive(std::span<const StoredFile> files, std::size_t alignment) {

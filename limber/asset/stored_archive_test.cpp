@@ -81,6 +81,26 @@ TEST(StoredArchive, InflatesWhatNumpyCompresses) {
   }
 }
 
+TEST(StoredArchive, WhatNobodyAsksForIsNotUnpacked) {
+  Bytes archive = storedZip({{"a", "one"}, {"b", "two"}});
+  archive[30 + 1 + 3 + 30 + 1] ^= 1;  // the first letter of "two": its checksum tells
+  EXPECT_EQ(refusalOf(archive), ErrorCode::kBadData);
+  const auto isA = [](const std::string& path) { return path == "a"; };
+  EXPECT_EQ(readZipArchive(archive, "a.zip", isA).at("a"), bytesOf("one"));
+  const ZipArchive directory(archive, "a.zip");
+  EXPECT_EQ(directory.find("a"), bytesOf("one"));
+  EXPECT_EQ(directory.find("c"), std::nullopt);
+  EXPECT_THROW(directory.find("b"), Error);
+}
+
+TEST(StoredArchive, ASmallArchiveHoldsNoGigabyte) {
+  Bytes archive = storedZip({{"a", "one"}});
+  const std::size_t entry = archive.size() - 22 - 47;
+  archive[entry + 10] = 8;    // deflated
+  archive[entry + 27] = 100;  // its size: 1.7 GB
+  EXPECT_EQ(refusalOf(archive), ErrorCode::kLimit);
+}
+
 TEST(StoredArchive, MayEndInAComment) {
   Bytes archive = storedZip({{"a", "one"}});
   archive[archive.size() - 2] = 5;

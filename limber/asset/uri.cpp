@@ -104,8 +104,7 @@ std::string encodeBase64(ByteSpan bytes) {
   return text;
 }
 
-std::string localPath(std::string_view uri) {
-  const std::string path = percentDecode(uri);
+void checkLocalPath(const std::string& path) {
   const auto refuse = [&](const char* why) {
     throw Error(ErrorCode::kBadData, "refers to \"" + path.substr(0, 200) + "\", " + why, {},
                 "put the file beside the model and name it by a relative path");
@@ -123,6 +122,11 @@ std::string localPath(std::string_view uri) {
     if (path.compare(begin, end - begin, "..") == 0) refuse("which leaves the model's folder");
     begin = end + 1;
   }
+}
+
+std::string localPath(std::string_view uri) {
+  std::string path = percentDecode(uri);
+  checkLocalPath(path);
   return path;
 }
 

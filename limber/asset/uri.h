@@ -23,6 +23,9 @@ std::string encodeBase64(ByteSpan bytes);
 // to something in or below the document's folder: a scheme, a host, an absolute path, "..", a control character.
 std::string localPath(std::string_view uri);
 
+// The same for a path that is none of a URI: nothing in it is decoded. Throws Error kBadData likewise.
+void checkLocalPath(const std::string& path);
+
 // The other way: a relative path as a URI reference.
 std::string percentEncode(std::string_view path);
 

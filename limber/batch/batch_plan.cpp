@@ -214,6 +214,12 @@ class EntryList {
         std::replace(own.begin(), own.end(), '.', '_');
         entry.output = place.replace_filename(place.stem().string() + own + extension).generic_string();
       }
+      // A folder's name may be told by either case of its letters.
+      if (const fs::path place = entry.output; lowerCase(place.begin()->string()) == kBatchOwnFolder) {
+        throw Error(ErrorCode::kBadData,
+                    fmt::format("would be written to '{}', among the batch's records", entry.output), entry.input,
+                    fmt::format("take '{}' out of the input's path", place.begin()->string()));
+      }
       if (!taken.emplace(entry.output, &entry).second) {
         throw Error(ErrorCode::kBadData, fmt::format("two inputs would be written to '{}'", entry.output), entry.input,
                     "give each a batch of its own");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <deque>
 #include <exception>
 #include <map>
@@ -62,7 +63,7 @@ class BatchRun {
       : plan_(plan),
         options_(options),
         prints_(std::find(plan.command.begin(), plan.command.end(), kBatchOutput) == plan.command.end()),
-        tasks_(plan, options.program),
+        tasks_(plan, options.program, options.adapterFolders),
         folder_{prepared()},
         records_(folder_.recordsOf(options.shard),
                  [&] {
@@ -95,6 +96,7 @@ class BatchRun {
 
     fs::path made() const { return work / fs::path(record.output).filename(); }
     fs::path warnings() const { return fs::path(work) += ".json"; }
+    fs::path temporary() const { return fs::path(work) += ".tmp"; }
   };
 
   // The folder, marked as a batch's before anything else is in it.
@@ -216,6 +218,7 @@ class BatchRun {
 
   Job jobOf(const BatchEntry& entry, const Open& open) const {
     makeFolder(open.work);
+    makeFolder(open.temporary());
     std::vector<std::string> arguments;
     for (const std::string& word : plan_.command) {
       arguments.push_back(word == kBatchInput    ? (plan_.folder / entry.input).string()
@@ -226,13 +229,17 @@ class BatchRun {
     const bool saysThreads = std::any_of(arguments.begin(), arguments.end(), [](const std::string& argument) {
       return argument.substr(0, argument.find('=')) == kThreads;
     });
+    for (const fs::path& folder : options_.adapterFolders) {
+      if (options_.takesAdapters) arguments.insert(arguments.end(), {"--adapter-folder", folder.string()});
+    }
     if (options_.takesThreads && !saysThreads) arguments.insert(arguments.end(), {std::string(kThreads), "1"});
     Job job;
     job.folder = plan_.folder;
     job.limits = plan_.limits;
     job.mostOutput = kMostOutput;
     if (options_.outOfMemoryCode != 0) job.outOfMemoryCode = options_.outOfMemoryCode;
-    job.work = [this, arguments, made = open.made(), warnings = open.warnings()] {
+    job.work = [this, arguments, made = open.made(), warnings = open.warnings(), temporary = open.temporary()] {
+      setenv("TMPDIR", temporary.c_str(), 1);
       return runInChild(arguments, made, warnings);
     };
     return job;
@@ -242,7 +249,7 @@ class BatchRun {
     BatchWarnings warnings;
     try {
       if (prints_ && !std::freopen(made.c_str(), "wb", stdout)) failToWrite(made, errno);
-      const int code = options_.command(arguments, warnings);
+      const int code = options_.command(arguments, made, warnings);
       if (prints_ && (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)) failToWrite(made, errno);
       if (code == 0 && !warnings.empty()) writeFile(warningsFile, asBytes(dumpReport(Json(warnings))));
       return code;
@@ -301,6 +308,7 @@ class BatchRun {
     pace_.add(secondsNow());
     keep(std::move(record));
     removeFolder(open.work);
+    removeFolder(open.temporary());
     std::error_code unseen;
     fs::remove(open.warnings(), unseen);
   }

@@ -18,7 +18,7 @@ struct BatchFolder {
   std::filesystem::path root;
 
   // All that is no output. A folder without it is no batch's.
-  std::filesystem::path own() const { return root / ".limber-batch"; }
+  std::filesystem::path own() const { return root / kBatchOwnFolder; }
   // What the batch is known by: the PlannedOutputs of the latest run.
   std::filesystem::path plan() const { return own() / "plan.json"; }
   std::filesystem::path records() const { return own() / "records"; }
@@ -26,10 +26,12 @@ struct BatchFolder {
   std::filesystem::path unfinished(const BatchShard& shard) const;
 };
 
-// A command as the program's own does it: its arguments, without the program's name; returns the exit code, and hands
-// over the warnings that it gave, by kind. What it says of an error goes to standard error; it throws nothing.
+// A command as the program's own does it: its arguments, without the program's name, and the one file that it may
+// write; returns the exit code, and hands over the warnings that it gave, by kind. What it says of an error goes to
+// standard error; it throws nothing.
 using BatchWarnings = std::vector<std::pair<std::string, std::size_t>>;
-using BatchCommand = std::function<int(const std::vector<std::string>& arguments, BatchWarnings& warnings)>;
+using BatchCommand = std::function<int(const std::vector<std::string>& arguments, const std::filesystem::path& output,
+                                       BatchWarnings& warnings)>;
 
 // How far a shard is.
 struct BatchProgress {
@@ -50,6 +52,10 @@ struct BatchOptions {
   bool retries = false;      // what did not end well is done again
   BatchCommand command;      // called in a child; what it prints is the output where the plan names none
   bool takesThreads = true;  // does the command? Then "--threads 1" is added where the plan says nothing of threads
+  // Where the command finds the user's adapters; absolute. It is given them as --adapter-folder behind an entry's
+  // options where it takes adapters.
+  std::vector<std::filesystem::path> adapterFolders;
+  bool takesAdapters = false;
   std::function<void(const BatchProgress&)> tell;  // some fifty times a second; may throw to end the run
   std::function<void()> waiting;  // ten times a second while another program is at this shard; may throw likewise
 };
@@ -57,6 +63,8 @@ struct BatchOptions {
 // An input that is no plain file, or has more bytes than an entry may have memory, fails unread: it may have no end.
 //
 // A disk that is full, can only be read or fails is no entry's fault: it ends the batch, and the entry has no line.
+//
+// A command's temporary files (TMPDIR) lie in the batch's own folder and go with the entry, however that ends.
 //
 // An entry's output is written aside, hashed and renamed to its place; then its line is appended to the shard's
 // records. So whatever ends a batch, an output is whole or not there, and the next run does what has no line. An entry

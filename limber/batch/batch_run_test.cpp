@@ -34,11 +34,18 @@ std::string textOf(const fs::path& file) {
 }
 
 // Copies a file, or does what its text says.
-int copyOrMisbehave(const std::vector<std::string>& arguments, BatchWarnings& warnings) {
+int copyOrMisbehave(const std::vector<std::string>& arguments, const fs::path& output, BatchWarnings& warnings) {
   const std::string text = textOf(arguments.at(1));
   if (text == "fail") {
     std::fprintf(stderr, "limber: %s: is broken\n", fs::path(arguments[1]).filename().c_str());
     return 1;
+  }
+  if (text == "temporary") {
+    const fs::path left = fs::temp_directory_path() / "left";
+    fs::create_directory(left);
+    std::ofstream(left / "model") << text;
+    std::ofstream(output.parent_path().parent_path().parent_path() / "where") << left.string();
+    raise(SIGKILL);
   }
   if (text == "crash") raise(SIGKILL);
   if (text == "endless") sleep(60);
@@ -93,6 +100,14 @@ class BatchRunTest : public ::testing::Test {
 
   testing::TemporaryFolder folder_;
 };
+
+TEST_F(BatchRunTest, TemporaryFilesOfAnEntryThatIsEndedGoWithIt) {
+  put("a.obj", "temporary");
+  EXPECT_EQ(runBatch(plan({"a"}), options()).failed, 1u);
+  const fs::path left = textOf(BatchFolder{output()}.own() / "where");
+  EXPECT_THAT(left.string(), HasSubstr(BatchFolder{output()}.own().string()));
+  EXPECT_FALSE(fs::exists(left));
+}
 
 TEST_F(BatchRunTest, WritesOutputsAndRecords) {
   put("a.obj", "one");

@@ -26,8 +26,11 @@ std::string textIn(const JsonView& value) {
 
 }  // namespace
 
-BatchTasks::BatchTasks(const BatchPlan& plan, const fs::path& program)
-    : plan_(plan), program_(sha256OfFile(program)), inputs_(plan.limits.memory) {
+BatchTasks::BatchTasks(const BatchPlan& plan, const fs::path& program, std::vector<fs::path> adapterFolders)
+    : plan_(plan),
+      adapterFolders_(std::move(adapterFolders)),
+      program_(sha256OfFile(program)),
+      inputs_(plan.limits.memory) {
   common_ = taskWith({});
 }
 
@@ -51,21 +54,32 @@ BatchTask BatchTasks::taskWith(const std::vector<std::string>& options) {
   return task;
 }
 
+// A file beside the plan, else an adapter; empty where there is neither.
+fs::path BatchTasks::fileNamed(const std::string& name) const {
+  std::error_code unseen;
+  if (name.empty()) return {};
+  if (fs::path file = plan_.folder / name; fs::is_regular_file(file, unseen)) return file;
+  for (const fs::path& folder : adapterFolders_) {
+    if (fs::path file = folder / (name + ".json"); fs::is_regular_file(file, unseen)) return file;
+  }
+  return {};
+}
+
 // The file that the argument names, by itself or as --name=file.
 const BatchTask& BatchTasks::fileOf(const std::string& argument) {
   const auto [known, isNew] = files_.try_emplace(argument);
   BatchTask& file = known->second;
   if (!isNew) return file;
   const std::size_t equals = argument.starts_with("--") ? argument.find('=') : std::string::npos;
-  const fs::path named = equals == std::string::npos ? argument : argument.substr(equals + 1);
-  std::error_code unseen;
-  if (named.empty() || !fs::is_regular_file(plan_.folder / named, unseen)) return file;
+  const std::string name = equals == std::string::npos ? argument : argument.substr(equals + 1);
+  const fs::path named = fileNamed(name);
+  if (named.empty()) return file;
   try {
-    file.digest = inputs_.of(plan_.folder / named).all;
+    file.digest = inputs_.of(named).all;
   } catch (const Error& error) {
     file.problem = error;
   } catch (const std::bad_alloc&) {
-    file.problem = Error(ErrorCode::kLimit, "takes more memory to be looked at than there is", named.string());
+    file.problem = Error(ErrorCode::kLimit, "takes more memory to be looked at than there is", name);
   }
   if (file.problem) file.digest = file.problem->what();
   return file;

@@ -24,16 +24,20 @@ struct BatchTask {
 // The tasks of a plan's entries. Files that they name are read once.
 class BatchTasks {
  public:
-  // The plan must outlive this. Throws Error kFile where the program cannot be read.
-  BatchTasks(const BatchPlan& plan, const std::filesystem::path& program);
+  // The plan must outlive this. Words of its command that are names of adapters in the folders name these files. Throws
+  // Error kFile where the program cannot be read.
+  BatchTasks(const BatchPlan& plan, const std::filesystem::path& program,
+             std::vector<std::filesystem::path> adapterFolders = {});
 
   BatchTask of(const BatchEntry& entry);
 
  private:
   BatchTask taskWith(const std::vector<std::string>& options);
   const BatchTask& fileOf(const std::string& argument);
+  std::filesystem::path fileNamed(const std::string& name) const;
 
   const BatchPlan& plan_;
+  std::vector<std::filesystem::path> adapterFolders_;
   std::string program_;  // its digest
   InputDigests inputs_;
   std::map<std::string, BatchTask> files_;  // that arguments name, by argument; an empty digest: it names none

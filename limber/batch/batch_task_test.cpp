@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "limber/jobs/own_program.h"
+#include "temporary_folder.h"
 
 namespace limber {
 namespace {
@@ -33,6 +36,21 @@ TEST(BatchTask, DependsOnWhereOptionsBegin) {
   BatchPlan shorter;
   shorter.command = {"rig"};
   EXPECT_NE(tasks.of({}).digest, BatchTasks(shorter, ownProgram()).of({{}, {}, {}, {"--quiet"}}).digest);
+}
+
+// So that a changed adapter runs anew.
+TEST(BatchTask, DependsOnTheAdaptersThatItNames) {
+  const testing::TemporaryFolder folder;
+  BatchPlan plan;
+  plan.folder = "/";
+  plan.command = {"rig", "--rigger", "mine"};
+  const auto digest = [&](const std::string& adapter) {
+    std::ofstream(folder.path() / "mine.json") << adapter;
+    return BatchTasks(plan, ownProgram(), {folder.path()}).of({}).digest;
+  };
+  const std::string first = digest("one");
+  EXPECT_EQ(digest("one"), first);
+  EXPECT_NE(digest("two"), first);
 }
 
 }  // namespace

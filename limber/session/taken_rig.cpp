@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "limber/asset/stored_archive.h"
+#include "limber/asset/smpl_arrays.h"
 #include "limber/core/names.h"
 #include "limber/pipeline/rig_from_animation.h"
 #include "limber/pipeline/smpl_body.h"
@@ -14,7 +14,7 @@ namespace limber {
 namespace {
 
 Asset bodyIn(ByteSpan bytes, const std::string& file, const Resolver& files) {
-  if (lowerExtension(file) == ".npz") return smplBody(readZipArchive(bytes, file), file);
+  if (lowerExtension(file) == ".npz") return smplBody(readSmplArrays(bytes, file), file);
   return readAsset(bytes, file, files);
 }
 

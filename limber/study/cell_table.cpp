@@ -1,6 +1,7 @@
 #include "limber/study/cell_table.h"
 
 #include <functional>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -40,7 +41,10 @@ void forEachRow(const StudyResult& study,
   }
 }
 
-std::string quoted(const std::string& text) {
+// A spreadsheet takes what begins like a formula for one, unless an apostrophe stands before it.
+std::string quoted(const std::string& field) {
+  const bool isFormula = !field.empty() && std::string_view("=+-@\t\r").find(field.front()) != std::string_view::npos;
+  const std::string text = isFormula ? "'" + field : field;
   if (text.find_first_of("\",\r\n") == std::string::npos) return text;
   std::string quotedText = "\"";
   for (const char c : text) quotedText += c == '"' ? std::string("\"\"") : std::string(1, c);

@@ -2,14 +2,14 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "limber/asset/smpl_arrays.h"
 #include "limber/asset/smpl_motion.h"
-#include "limber/asset/stored_archive.h"
 #include "limber/pipeline/smpl_body.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   limber::NpzFiles files;
   try {
-    files = limber::readZipArchive({data, size}, "fuzz.npz");
+    files = limber::readSmplArrays({data, size}, "fuzz.npz");
   } catch (const limber::Error&) {
     return 0;
   }

@@ -13,6 +13,7 @@
 #include <cstdlib>
 #include <memory>
 #include <semaphore>
+#include <string_view>
 #include <utility>
 
 namespace limber::cli {
@@ -26,6 +27,8 @@ constexpr std::size_t kMostRequestBytes = 16 * 1024;  // line and headers; a bro
 constexpr std::size_t kMostWritten = 16 * 1024;       // at once: a record of TLS
 constexpr auto kMostRequestTime = 10s;                // for all of a request, the handshake before it included
 constexpr auto kMostWriteTime = 10s;                  // for one piece
+constexpr auto kMostFarewell = 1s;                    // for what comes behind a last request
+constexpr std::size_t kMostUnread = 256 * 1024;       // of that
 constexpr auto kKeptAlive = 5s;                       // between two requests
 constexpr int kMostRequests = 200;                    // on one connection
 constexpr int kLook = 100;                            // milliseconds between two looks whether the server stops
@@ -44,14 +47,26 @@ class Connection : public httplib::Stream {
   // Whether the first byte of a further request has come.
   bool requestComes() {
     left_ = kMostRequestBytes;
+    answered_ = false;
     deadline_ = Clock::now() + kKeptAlive;
     if (at_ == end_ && !fill()) return false;
     deadline_ = Clock::now() + kMostRequestTime;
     return true;
   }
 
+  // Whether nothing more may be read as a request. To be told before its answer, or found by that.
+  bool isLast() const { return last_; }
+  void makeLast() { last_ = true; }
+
+  // What the other side still sends is let go, for a moment: where it was unread, the system would take back the
+  // answer.
   void sayGoodbye() {
     if (tls_) SSL_shutdown(tls_);
+    if (!last_) return;
+    shutdown(socket_, SHUT_WR);
+    deadline_ = Clock::now() + kMostFarewell;
+    std::size_t unread = 0;
+    while (unread < kMostUnread && fill()) unread += end_;
   }
 
   ssize_t read(char* to, std::size_t size) override {
@@ -64,6 +79,7 @@ class Connection : public httplib::Stream {
   }
 
   ssize_t write(const char* from, std::size_t size) override {
+    if (!std::exchange(answered_, true) && !isSuccess({from, size})) last_ = true;
     deadline_ = Clock::now() + kMostWriteTime;
     const int piece = static_cast<int>(std::min(size, kMostWritten));
     return carryOut(
@@ -81,6 +97,13 @@ class Connection : public httplib::Stream {
   void get_local_ip_and_port(std::string& ip, int& port) const override { tell(getsockname, ip, port); }
 
  private:
+  // By an answer's first bytes: status 2xx or 3xx.
+  static bool isSuccess(std::string_view answer) {
+    constexpr std::string_view kVersion = "HTTP/1.1 ";
+    return answer.size() > kVersion.size() && answer.starts_with(kVersion) &&
+           (answer[kVersion.size()] == '2' || answer[kVersion.size()] == '3');
+  }
+
   bool fill() {
     const ssize_t count = carryOut(
         [&] {
@@ -145,8 +168,16 @@ class Connection : public httplib::Stream {
   Clock::time_point deadline_;
   std::array<char, 4096> buffer_;
   std::size_t at_ = 0, end_ = 0;
-  std::size_t left_ = 0;  // bytes that the request may still have
+  std::size_t left_ = 0;   // bytes that the request may still have
+  bool answered_ = false;  // the request, in part
+  bool last_ = false;
 };
+
+// What the library takes from a request's headers. Memory for many ranges would be many times the file's.
+void takeNoRanges(httplib::Request& request) {
+  request.ranges.clear();
+  request.headers.erase("Range");
+}
 
 // The library's own keeps an endless list of connections.
 class BoundedPool : public httplib::TaskQueue {
@@ -169,6 +200,12 @@ class BoundedPool : public httplib::TaskQueue {
 
 }  // namespace
 
+bool hasBody(const httplib::Request& request) {
+  const std::size_t lengths = request.get_header_value_count("Content-Length");
+  return lengths > 1 || (lengths == 1 && request.get_header_value("Content-Length") != "0") ||
+         request.has_header("Transfer-Encoding") || request.has_header("Expect");
+}
+
 BoundedServer::BoundedServer(SSL_CTX* tls, std::size_t most) : tls_(tls) {
   new_task_queue = [most] { return new BoundedPool(most); };
   set_payload_max_length(0);
@@ -184,7 +221,12 @@ bool BoundedServer::process_and_close_socket(socket_t socket) {
     bool open = connection.shakeHands();
     for (int request = 1; open && request <= kMostRequests && connection.requestComes(); ++request) {
       bool asked_to_close = false;
-      open = process_request(connection, request == kMostRequests, asked_to_close, nullptr) && !asked_to_close;
+      const auto look = [&](httplib::Request& asked) {
+        takeNoRanges(asked);
+        if (hasBody(asked)) connection.makeLast();
+      };
+      open = process_request(connection, request == kMostRequests, asked_to_close, look) && !asked_to_close &&
+             !connection.isLast();
       answered = true;
     }
     if (answered) connection.sayGoodbye();

@@ -1,5 +1,9 @@
 // cpp-httplib's server within limits that it has none for: how many connections there are, how many bytes a request
 // has and how long it may take to come. Plain or through TLS.
+//
+// It has no use for a request's body and reads none, so a body would be taken for the next request, of whatever headers
+// its sender likes. Hence the connection ends with each answer that is no success or redirection, and with each request
+// that says that more follows its headers. Ranges are not looked at: the answer is the whole file.
 #pragma once
 
 #include <httplib.h>
@@ -19,5 +23,8 @@ class BoundedServer : public httplib::Server {
 
   SSL_CTX* tls_;
 };
+
+// Whether a request says that something follows its headers.
+bool hasBody(const httplib::Request& request);
 
 }  // namespace limber::cli

@@ -25,11 +25,16 @@ constexpr const char* kLoopback = "127.0.0.1";
 constexpr std::size_t kMostConnections = 64;  // a browser opens up to six
 constexpr std::string_view kJoin = "/join/";  // the token follows
 
-// What the page needs and no more. Models and motions may come from any address that the user names.
-constexpr const char* kContentPolicy =
+// What the page needs and no more: it can send nothing away. Only a document that was asked for with the address of a
+// model (?model=, app/beginning.ts) may fetch from other sites, since such an address may redirect anywhere.
+constexpr std::string_view kContentPolicy =
     "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; style-src 'self'; "
-    "img-src 'self' data: blob:; media-src 'self' data: blob:; connect-src 'self' http: https: data: blob:; "
+    "img-src 'self' data: blob:; media-src 'self' data: blob:; connect-src 'self'{} data: blob:; "
     "manifest-src 'self'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'";
+
+std::string contentPolicy(bool fetches_models) {
+  return fmt::format(kContentPolicy, fetches_models ? " http: https:" : "");
+}
 
 // For whoever has no key: what to do, in the languages of the page.
 constexpr const char* kRefusal =
@@ -59,6 +64,9 @@ void answerWithFile(const httplib::Request& request, httplib::Response& response
   const std::string_view path = request.path == "/" ? "/index.html" : std::string_view(request.path);
   for (const StudioFile& file : studioFiles()) {
     if (file.path != path) continue;
+    const bool fetches = path == "/index.html" && request.has_param("model");
+    response.headers.erase("Content-Security-Policy");
+    response.set_header("Content-Security-Policy", contentPolicy(fetches));
     response.set_content(file.bytes.data(), file.bytes.size(), typeOf(path));
     return;
   }
@@ -70,7 +78,7 @@ void setHeaders(httplib::Server& server) {
   server.set_default_headers({{"Cross-Origin-Opener-Policy", "same-origin"},
                               {"Cross-Origin-Embedder-Policy", "require-corp"},
                               {"Cross-Origin-Resource-Policy", "same-origin"},
-                              {"Content-Security-Policy", kContentPolicy},
+                              {"Content-Security-Policy", contentPolicy(false)},
                               {"Referrer-Policy", "no-referrer"},
                               {"Cache-Control", "no-cache"},
                               {"X-Content-Type-Options", "nosniff"}});
@@ -80,7 +88,7 @@ using Handled = httplib::Server::HandlerResponse;
 
 Handled refuse(httplib::Response& response, int status) {
   response.status = status;
-  response.set_header("Connection", "close");  // what follows the headers is not read
+  response.set_header("Connection", "close");
   return Handled::Handled;
 }
 
@@ -90,6 +98,7 @@ Handled checkRequest(const Site& site, const httplib::Request& request, httplib:
     response.set_header("Allow", "GET, HEAD");
     return refuse(response, 405);
   }
+  if (hasBody(request)) return refuse(response, 400);
   // Two of them would be read by one part as this and by another as that.
   if (request.get_header_value_count("Host") != 1 || request.get_header_value_count("Origin") > 1 ||
       !isForSite(site, request.get_header_value("Host"), request.get_header_value("Origin"))) {

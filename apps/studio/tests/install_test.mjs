@@ -262,6 +262,20 @@ const cases = {
     assert.equal(new URL(page.url()).search, '');
     assert.deepEqual(Object.values(await kept()).flatMap(Object.keys).filter((url) => /share/.test(url)), []);
   },
+  async 'a form that another site sends is turned away'() {
+    const other = await serve(site), stranger = await context.newPage();
+    const studio = page.url();
+    await stranger.goto(`${other.address}`).catch(() => {});
+    const [answer] = await Promise.all([stranger.waitForResponse((response) => response.url().endsWith('/share')), stranger.evaluate((action) => {
+      const form = document.createElement('form');
+      Object.assign(form, { method: 'post', enctype: 'multipart/form-data', action });
+      document.body.append(form);
+      form.submit();
+    }, new URL('share', studio).href)]);
+    assert.equal(answer.status(), 403);
+    await stranger.close();
+    other.close();
+  },
   async 'a file that the system opens with the studio is opened'() {
     await context.addInitScript((bytes) => {
       const file = { getFile: async () => new File([new Uint8Array(bytes)], 'launched.glb') };

@@ -15,6 +15,7 @@ const cacheName = ours + version;
 const addressOf = (path: string) => new URL(path, scope).href;
 const known = new Set(Object.keys(builtFiles).map(addressOf));
 const shareTarget = addressOf('share');
+const mostShared = 2 ** 30; // bytes
 /** Shared with the studio by another app, until its page has asked for them. */
 let sharedFiles: File[] = [];
 
@@ -52,8 +53,16 @@ async function answerFromBuild(address: string, request: Request): Promise<Respo
   return await cache.match(address) ?? fetch(request);
 }
 
+/** Any site's page can send a form here; what the system shares has no page behind it. A site that hides its address is not told apart. */
+function isOfOtherSite({ referrer, headers }: Request): boolean {
+  if (['cross-site', 'same-site'].includes(headers.get('sec-fetch-site') ?? '')) return true;
+  return /^https?:/.test(referrer) && new URL(referrer).origin !== self.location.origin;
+}
+
 async function takeShared(request: Request): Promise<Response> {
-  sharedFiles = (await request.formData()).getAll('files').filter((entry): entry is File => entry instanceof File);
+  if (isOfOtherSite(request)) return new Response('', { status: 403 });
+  const files = (await request.formData()).getAll('files').filter((entry): entry is File => entry instanceof File);
+  sharedFiles = files.reduce((sum, { size }) => sum + size, 0) <= mostShared ? files : [];
   return Response.redirect(addressOf('./?shared'), 303);
 }
 
@@ -61,11 +70,15 @@ self.addEventListener('install', (event) => event.waitUntil(keepBuild()));
 self.addEventListener('activate', (event) => event.waitUntil(dropOtherBuilds()));
 
 self.addEventListener('fetch', (event) => {
-  const { request } = event, url = new URL(request.url);
+  const { request } = event, url = new URL(request.url), namesModel = url.searchParams.has('model');
   url.search = url.hash = '';
   const address = url.href === addressOf('index.html') ? scope : url.href;
   if (request.method === 'POST' && address === shareTarget) event.respondWith(takeShared(request));
-  else if (request.method === 'GET' && known.has(address)) event.respondWith(answerFromBuild(address, request));
+  else if (request.method === 'GET' && known.has(address)) {
+    // The program's server lets only a document that names a model fetch it (apps/cli/studio/server.cpp): not the kept one.
+    const kept = () => answerFromBuild(address, request);
+    event.respondWith(namesModel && address === scope ? fetch(request).catch(kept) : kept());
+  }
 });
 
 self.addEventListener('message', (event) => {

@@ -1,0 +1,24 @@
+#include "limber/core/printable.h"
+
+#include <gtest/gtest.h>
+
+namespace limber {
+namespace {
+
+TEST(Printable, ShowsWhatATerminalWouldObey) {
+  EXPECT_EQ(printable("\x1b]0;OWNED\x07\x1b[31mred"), "\\x1b]0;OWNED\\x07\\x1b[31mred");
+  EXPECT_EQ(printable("a\r\nlimber: forged\x7f\t"), "a\\x0d\\x0alimber: forged\\x7f\\x09");
+  EXPECT_EQ(printable("\xc2\x9b"
+                      "2J"),
+            "\\u009b2J");
+}
+
+TEST(Printable, LeavesWordsAlone) {
+  const std::string words = "Hüfte 腰 \xc2\xa0 ~ \"C:\\x\"";
+  EXPECT_EQ(printable(words), words);
+  EXPECT_EQ(printable("\xc2"), "\xc2");
+  EXPECT_EQ(printableText("a\tb\nc\r\n"), "a\tb\nc\\x0d\n");
+}
+
+}  // namespace
+}  // namespace limber
