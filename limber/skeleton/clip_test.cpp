@@ -1,5 +1,6 @@
 #include "limber/skeleton/clip.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -65,7 +66,7 @@ TEST(Clip, StepsShowEachKeyAtItsFrame) {
     for (int k = 0; k < kFrames; ++k) {
       EXPECT_EQ(sampleTrack(track, k / rate).x(), k) << rate;
       EXPECT_EQ(sampleTrack(track, k * (1 / rate)).x(), k) << rate;
-      if (k > 0) EXPECT_EQ(sampleTrack(track, (k - 0.01) / rate).x(), k - 1) << rate;
+      EXPECT_EQ(sampleTrack(track, (k - 0.01) / rate).x(), std::max(0, k - 1)) << rate;
     }
   }
 }
