@@ -20,6 +20,7 @@
 #include "limber/core/names.h"
 #include "limber/export/write_model.h"
 #include "limber/skeleton/clip_edit.h"
+#include "limber/skeleton/moving_scales.h"
 #include "motion_arguments.h"
 #include "progress_line.h"
 #include "target_arguments.h"
@@ -190,7 +191,13 @@ std::vector<std::pair<fs::path, Bytes>> bvhFiles(const Motion& motion, const Con
   return files;
 }
 
-void writeBvhFiles(const Motion& motion, const ConvertArguments& options, const Account& account) {
+void writeBvhFiles(Motion& motion, const ConvertArguments& options, const Account& account) {
+  for (const Clip& clip : motion.clips) {
+    const std::vector<Index> scaled = jointsWithScales(motion.skeleton, clip);
+    if (scaled.empty()) continue;
+    motion.warnings.add("bvh-scales", "scales of joints change, which a BVH does not hold: they are left out",
+                        motion.skeleton.joints[scaled.front()].name, scaled.size());
+  }
   const std::vector<std::pair<fs::path, Bytes>> files = bvhFiles(motion, options);
   std::vector<OutputFile> outputs;
   outputs.reserve(files.size());
@@ -213,6 +220,17 @@ void keepClips(Asset& asset, const std::vector<std::string>& names) {
   views.sweep(asset);
 }
 
+// Reading what was read before tells the same again.
+void appendNewKinds(const Warnings& from, Warnings& to) {
+  const std::vector<Warning> known = to.items();
+  for (const Warning& warning : from.items()) {
+    const auto isSame = [&](const Warning& other) { return other.kind == warning.kind; };
+    if (std::none_of(known.begin(), known.end(), isSame)) {
+      to.add(warning.kind, warning.message, warning.where, warning.count);
+    }
+  }
+}
+
 // A model keeps all but the animations of its joints, which make room for the clips; from a motion comes a skeleton.
 // The motion has the clips as they are edited afterwards.
 Asset withClips(std::optional<Asset>& model, Motion& motion, const ConvertArguments& options,
@@ -224,7 +242,9 @@ Asset withClips(std::optional<Asset>& model, Motion& motion, const ConvertArgume
     keepClips(asset, options.clips);
     std::optional<TimeSpan> cut;
     if (!options.trim.empty()) cut = trimSpan(options.trim);
+    asset.warnings = {};  // the motion has them, and those of its own reading
     names = replaceClips(asset, movingSkeleton(asset), motion.clips, cut);
+    appendNewKinds(asset.warnings, motion.warnings);
   } else {
     asset = motionAsset(motion);
     for (const gltf::Animation& animation : asset.document.animations) names.push_back(animation.name);

@@ -100,9 +100,12 @@ std::optional<JointLimits> readLimits(const std::string& file, const Skeleton& s
 }
 
 // As the file's nodes stand, or as at a moment of a clip.
-Pose startPose(const Asset& asset, const AssetSkeleton& skeleton, const PoseArguments& options) {
+Pose startPose(Asset& asset, const AssetSkeleton& skeleton, const PoseArguments& options) {
   if (!options.clip && !options.seconds) return readNodePose(asset, skeleton);
-  return poseAt(asset, skeleton, {options.clip.value_or(""), options.seconds.value_or(0)});
+  const ClipMoment moment{options.clip.value_or(""), options.seconds.value_or(0)};
+  const Pose pose = poseAt(asset, skeleton, moment);
+  writeShapeWeights(asset, shapesAt(asset, moment));
+  return pose;
 }
 
 // As heavy as the skin says, where there is one: only balance asks.
@@ -184,8 +187,9 @@ void run(PoseArguments options) {
                        {options.pose.ik, massesFor(edits, asset, skeleton)});
   }
   progress->stage("write");
+  const Warnings written = writeResult(asset, skeleton, pose, options);
   Warnings warnings = asset.warnings;
-  warnings.append(writeResult(asset, skeleton, pose, options));
+  warnings.append(written);
   progress.finish();
 
   const Account account(options.common.quiet, options.output);

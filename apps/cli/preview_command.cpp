@@ -50,18 +50,18 @@ bool showsClip(const PreviewArguments& options) {
   return options.animate || options.frames > 0 || options.time || !options.clip.empty();
 }
 
-std::vector<double> momentsOf(const PreviewArguments& options, const Clip& clip) {
+std::vector<double> momentsOf(const PreviewArguments& options, double duration) {
   if (options.animate) {
     constexpr double kMostFrames = 1000;
-    const double count = std::round(clip.duration() * options.fps.value_or(kUsualFps));
+    const double count = std::round(duration * options.fps.value_or(kUsualFps));
     if (count > kMostFrames) {
       throw Error(ErrorCode::kLimit, fmt::format("the animation would have {:.0f} pictures", count), "",
                   fmt::format("{:.0f} are the most: choose a smaller --fps, or cut the clip by limber convert --trim",
                               kMostFrames));
     }
-    return clipMoments(clip, std::max(1, static_cast<int>(count)), false);
+    return clipMoments(duration, std::max(1, static_cast<int>(count)), false);
   }
-  if (options.frames > 0) return clipMoments(clip, options.frames, true);
+  if (options.frames > 0) return clipMoments(duration, options.frames, true);
   return {options.time.value_or(0)};
 }
 
@@ -85,7 +85,7 @@ void checkPixels(std::size_t pictures, const PreviewOptions& preview) {
 Bytes clipPicture(const Asset& asset, const SceneMaker& scenes, const PreviewArguments& options,
                   const PreviewOptions& preview, Progress& progress, Warnings& warnings) {
   const Clip clip = findClip(asset, options.clip);
-  const std::vector<double> moments = momentsOf(options, clip);
+  const std::vector<double> moments = momentsOf(options, scenes.duration(clip));
   checkPixels(moments.size(), preview);
   const std::vector<Image> images = renderClip(scenes, clip, moments, preview, progress, warnings);
   if (options.animate) return encodeApng(images, options.fps.value_or(kUsualFps));

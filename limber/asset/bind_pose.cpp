@@ -4,8 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <map>
+#include <set>
 
 #include "limber/asset/accessor.h"
+#include "limber/asset/weight_attributes.h"
 
 namespace limber {
 
@@ -170,6 +174,46 @@ class SkinPlacer {
 
 BindPose readBindPose(const Asset& asset, const SceneGraph& graph) {
   return SkinPlacer(asset, graph).place();
+}
+
+namespace {
+
+// The joints, as numbers of a skin's list, that a mesh has weights for.
+std::set<Index> weightedJoints(const Asset& asset, Index mesh) {
+  std::set<Index> joints;
+  for (const gltf::Primitive& primitive : asset.document.meshes[mesh].primitives) {
+    for (const InfluenceSet& set : readInfluenceSets(asset, primitive)) {
+      for (std::size_t i = 0; i < set.weights.size(); ++i) {
+        if (set.weights[i] > 0) joints.insert(set.joints[i]);
+      }
+    }
+  }
+  return joints;
+}
+
+}  // namespace
+
+std::vector<Index> skinsBoundElsewhere(const Asset& asset, const BindPose& pose) {
+  std::map<Index, std::set<Index>> elsewhere;  // by skin, of its joints
+  for (const Index skin : pose.skins) {
+    const SkinBinding binding = readSkinBinding(asset, skin);
+    for (Index j = 0; j < binding.joints.size(); ++j) {
+      const Affine placement = pose.nodeWorld[binding.joints[j]] * binding.inverseBinds[j];
+      if (!samePlacement(placement, pose.skinToWorld[skin])) elsewhere[skin].insert(j);
+    }
+  }
+  std::vector<bool> counts(asset.document.skins.size(), false);
+  std::map<Index, std::set<Index>> weighted;  // by mesh
+  for (const gltf::Node& node : asset.document.nodes) {
+    if (!node.skin || !node.mesh || elsewhere.count(*node.skin) == 0 || counts[*node.skin]) continue;
+    const auto [known, isNew] = weighted.try_emplace(*node.mesh);
+    if (isNew) known->second = weightedJoints(asset, *node.mesh);
+    const std::set<Index>&off = elsewhere[*node.skin], &has = known->second;
+    counts[*node.skin] = std::any_of(off.begin(), off.end(), [&](Index joint) { return has.count(joint) > 0; });
+  }
+  std::vector<Index> result;
+  std::copy_if(pose.skins.begin(), pose.skins.end(), std::back_inserter(result), [&](Index s) { return counts[s]; });
+  return result;
 }
 
 }  // namespace limber

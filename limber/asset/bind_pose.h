@@ -10,8 +10,8 @@ namespace limber {
 
 struct SkinBinding {
   std::vector<Index> joints;         // #J nodes
-  std::vector<Affine> inverseBinds;  // #J, mesh space -> joint space; identity where the file gives none
-  bool given = false;                // does the file give them?
+  std::vector<Affine> inverseBinds;  // #J, mesh space -> joint space; identity where the file gives none, as glTF says
+  bool given = false;                // does the file give them? If not, joints are bound where their nodes are
 };
 SkinBinding readSkinBinding(const Asset& asset, Index skin);
 
@@ -28,5 +28,10 @@ struct BindPose {
                                     // stored where there is none
 };
 BindPose readBindPose(const Asset& asset, const SceneGraph& graph);
+
+// The skins in use that were bound in another pose than that one: joints with weights are elsewhere by their inverse
+// binds than where nodeWorld has them, since another skin that has them was bound otherwise, or since the skin has no
+// inverse binds, which glTF reads as the identity. Their surface in the bind pose is what skinning makes of it there.
+std::vector<Index> skinsBoundElsewhere(const Asset& asset, const BindPose& pose);
 
 }  // namespace limber

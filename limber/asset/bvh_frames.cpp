@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "limber/core/numbers.h"
+#include "limber/skeleton/held_clip.h"
 
 namespace limber {
 
@@ -115,9 +116,9 @@ void BvhFrames::addFrame(std::span<const double> values) {
   ++count_;
 }
 
-Clip BvhFrames::takeClip(double secondsPerFrame) {
+Clip BvhFrames::takeClip(double framesPerSecond) {
   std::vector<float> times(count_);
-  for (std::size_t k = 0; k < count_; ++k) times[k] = static_cast<float>(static_cast<double>(k) * secondsPerFrame);
+  for (std::size_t k = 0; k < count_; ++k) times[k] = static_cast<float>(static_cast<double>(k) / framesPerSecond);
   const bool relative = positionsAreRelative();
   Clip clip;
   for (Tracks& tracks : moving_) {
@@ -129,6 +130,7 @@ Clip BvhFrames::takeClip(double secondsPerFrame) {
     if (tracks.rotations) addTrack(clip.rotations, tracks.joint, tracks.rotationValues, times);
     if (tracks.scales) addTrack(clip.scales, tracks.joint, tracks.scaleValues, times);
   }
+  keepDuration(clip, times);
   count_ = 0;
   return clip;
 }

@@ -24,8 +24,9 @@ class BvhFrames {
     return squaresOfRelative_ < kClearly * squaresOfAbsolute_;
   }
 
-  // The frames so far, `secondsPerFrame` apart; they are then gone from here. Tracks of one value have one key.
-  Clip takeClip(double secondsPerFrame);
+  // The frames so far; they are then gone from here. Tracks of one value have one key, but that the clip lasts as long
+  // as its frames.
+  Clip takeClip(double framesPerSecond);
 
  private:
   struct Tracks {

@@ -16,9 +16,21 @@ namespace limber {
 namespace {
 
 constexpr Index kMostFrames = Index{1} << 22;  // their times still differ in single precision
-constexpr double kUsualFrameTime = 1.0 / 30;
+constexpr double kUsualRate = 30;
 constexpr double kShortestFrame = 1e-6, kLongestFrame = 1e6;  // seconds
 constexpr const char* kCutFile = "the file is cut or damaged: export it again";
+
+// Frames a second. Files write the time of a frame with six digits behind the point: what rounds to it is meant, a
+// whole number of frames or, as in video, a thousand and first less.
+double rateOf(double frameTime) {
+  constexpr double kRounding = 0.5000001e-6, kVideo = 1000.0 / 1001;
+  constexpr double kHighest = 250;  // frames a second; beyond it six digits say little
+  const double rate = 1 / frameTime;
+  for (const double meant : {std::round(rate), std::round(rate / kVideo) * kVideo}) {
+    if (meant > 0 && meant <= kHighest && std::abs(1 / meant - frameTime) <= kRounding) return meant;
+  }
+  return rate;
+}
 
 // Cuts pieces of a file into lines: LF, CR LF or CR.
 class LineSplitter {
@@ -123,14 +135,14 @@ class BvhReader {
     if (part_ == Part::kHierarchy) hierarchy_.finish(lastLine_);
     Motion motion;
     motion.name = std::filesystem::path(std::string(name)).stem().string();
-    motion.framesPerSecond = 1 / frameTime_;
+    motion.framesPerSecond = framesPerSecond_;
     reportFrames();
     buildSkeleton(motion);
     if (frames_ && frames_->count() > 0) {
       if (frames_->positionsAreRelative()) {
         warnings_.add("relative-positions", "positions of joints below the root are added to their offsets");
       }
-      motion.clips.push_back(frames_->takeClip(frameTime_));
+      motion.clips.push_back(frames_->takeClip(framesPerSecond_));
       motion.clips.back().name = motion.name;
     }
     convert(motion);
@@ -182,7 +194,7 @@ class BvhReader {
     if (behindColon.word() == ":") line = behindColon;
     const double seconds = line.number();
     if (seconds >= kShortestFrame && seconds <= kLongestFrame) {
-      frameTime_ = seconds;
+      framesPerSecond_ = rateOf(seconds);
     } else {
       warnings_.add("frame-time", fmt::format("frame time of {:g} s is replaced by 1/30 s", seconds),
                     where(line.lineNumber()));
@@ -333,7 +345,7 @@ class BvhReader {
   std::optional<BvhFrames> frames_;
   Part part_ = Part::kHierarchy;
   std::optional<double> announced_;  // frames
-  double frameTime_ = kUsualFrameTime;
+  double framesPerSecond_ = kUsualRate;
   std::vector<double> row_, values_;  // #channels: as read; as used
   std::optional<Error> cutFrame_;
   std::size_t lastLine_ = 0;

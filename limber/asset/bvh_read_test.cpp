@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <random>
 
@@ -239,6 +240,32 @@ TEST(ReadBvh, GivesConstantTracksOneKey) {
   EXPECT_EQ(motion.clips[0].translations[1].times.size(), 1u);
 }
 
+TEST(ReadBvh, AHeldPoseLastsAsLongAsItsFrames) {
+  const Motion motion = read(twoJoints("0 4 0 3 1 2\n0 4 0 3 1 2\n0 4 0 3 1 2\n", 3));
+  EXPECT_FLOAT_EQ(static_cast<float>(motion.clips[0].duration()), 0.2f);
+  EXPECT_NEAR(frameRateOf(motion, 0), 10, 1e-4);
+  EXPECT_EQ(frameCount(motion.clips[0], 10), 3u);
+}
+
+TEST(ReadBvh, TakesRoundedFrameTimesForWhatTheyMean) {
+  const auto rate = [](const std::string& frameTime) {
+    return read(twoJoints("0 0 0 3 1 2\n1 0 0 3 1 2\n", 2, frameTime)).framesPerSecond;
+  };
+  for (const auto& [frameTime, meant] : std::map<std::string, double>{{"0.033333", 30},
+                                                                      {"0.0333333", 30},
+                                                                      {"0.008333", 120},
+                                                                      {"0.016667", 60},
+                                                                      {"0.041667", 24},
+                                                                      {"0.025", 40},
+                                                                      {"2", 0.5}}) {
+    EXPECT_EQ(rate(frameTime), meant) << frameTime;
+  }
+  EXPECT_DOUBLE_EQ(rate("0.041708"), 24000.0 / 1001);
+  EXPECT_DOUBLE_EQ(rate("0.033367"), 30000.0 / 1001);
+  EXPECT_DOUBLE_EQ(rate("0.0333"), 1 / 0.0333) << "not within six digits";
+  EXPECT_DOUBLE_EQ(rate("0.00071"), 1 / 0.00071) << "rounding that says little";
+}
+
 TEST(ReadBvh, ScalesToTheUnitAndStandsUp) {
   const std::string text =
       "HIERARCHY\nROOT Hips\n{\nOFFSET 0 0 90\nCHANNELS 6 Xposition Yposition Zposition Xrotation Yrotation "
@@ -287,6 +314,14 @@ TEST(ReadBvh, NamesTheLineOfAnError) {
   EXPECT_THAT(errorOf(replaced(twoJoints(""), "Time", "Tim")), HasSubstr("line 14: \"Frame Time:\" is wanted"));
   EXPECT_THAT(errorOf(replaced(twoJoints(""), "Frames: 2", "Frames: -2")), HasSubstr("line 13"));
   EXPECT_EQ(errorOf(good), "no error");
+}
+
+TEST(ReadBvh, RepairsWhatWindowsProgramsWriteForNoNumber) {
+  for (const char* number : {"nan", "-nan(ind)", "-1.#IND00", "1.#QNAN", "1.#INF00"}) {
+    const Motion motion = read(twoJoints(fmt::format("0 0 0 3 1 2\n1 {} 0 3 1 2\n", number)));
+    EXPECT_THAT(kinds(motion), ::testing::ElementsAre("bad-numbers")) << number;
+    EXPECT_EQ(motion.clips[0].translations[0].values[1], Vec3f(1, 0, 0)) << number;
+  }
 }
 
 TEST(ReadBvh, CountsWhatItRepairs) {

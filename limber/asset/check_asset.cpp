@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "limber/asset/document_errors.h"
+#include "limber/asset/node_edit.h"
 
 namespace limber {
 
@@ -89,6 +90,7 @@ void checkAnimations(const gltf::Document& document) {
       const auto place = [&](const char* key) { return fmt::format("animations[{}].channels[{}].{}", a, i, key); };
       requireElement(channel.sampler, animation.samplers.size(), [&] { return place("sampler"); });
       requireElement(channel.target.node, document.nodes.size(), [&] { return place("target.node"); });
+      requireElement(channelTarget(channel).node, document.nodes.size(), [&] { return place("target"); });
     }
   }
 }

@@ -5,6 +5,7 @@
 
 #include "limber/asset/asset.h"
 #include "limber/asset/rig_io.h"
+#include "limber/asset/shape_surface.h"
 #include "limber/skeleton/pose.h"
 
 namespace limber {
@@ -17,6 +18,9 @@ struct ClipMoment {
 // How the joints stand then, those that the clip does not move as the file's nodes do. Of `skeleton`,
 // readSkeleton(asset). Throws Error kBadArgument where the model has no such clip, or none at all.
 Pose poseAt(const Asset& asset, const AssetSkeleton& skeleton, const ClipMoment& moment);
+
+// The weights of blend shapes then. Throws Error kBadArgument where the model has no such clip.
+ShapeWeights shapesAt(const Asset& asset, const ClipMoment& moment);
 
 // Makes the pose of that moment the rest pose of the model (setRestPose): a still model whose true skeleton is known.
 // Throws as poseAt and setRestPose do.

@@ -366,7 +366,7 @@ void writeFbxSkin(const Asset& asset, const FbxScenePlan& scene, const FbxModelP
     if (!joint) continue;
     // Where this skin has the joint: a document may bind it elsewhere for another.
     const Affine toMesh = binding.inverseBinds[j].inverse(Eigen::Affine);
-    const bool isKnown = binding.given && toMesh.matrix().allFinite();
+    const bool isKnown = toMesh.matrix().allFinite();
     const Affine link = space.world(isKnown ? model.bindWorld * toMesh : scene.models[*joint].bindWorld);
     FbxObjectWriter::Made made = objects.make("Deformer", scene.models[*joint].name, "SubDeformer", "Cluster");
     addRecord(made.record, "Version", {std::int32_t{100}});

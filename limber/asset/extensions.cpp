@@ -13,8 +13,6 @@ namespace limber {
 
 namespace {
 
-constexpr const char* kPointerName = "KHR_animation_pointer";
-
 // What limber follows itself, and what only says how a surface is lit or described.
 bool isHarmless(std::string_view name) {
   constexpr std::string_view kFollowed[] = {"KHR_mesh_quantization", "EXT_mesh_gpu_instancing",

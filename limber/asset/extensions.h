@@ -10,6 +10,8 @@ namespace limber {
 
 // Of VRM 1.0: chains of nodes that swing.
 inline constexpr const char* kSpringBoneName = "VRMC_springBone";
+// Channels of animations that name what they change by a JSON pointer.
+inline constexpr const char* kPointerName = "KHR_animation_pointer";
 // Many copies of a node's mesh, each with a transform of its own.
 inline constexpr const char* kInstancingName = "EXT_mesh_gpu_instancing";
 

@@ -39,8 +39,9 @@ Asset everything(const std::string& extensionOfAll) {
   json["nodes"] = {{{"name", "body"}, {"children", {1, 2}}},
                    {{"name", "hand"}, {"mesh", 0}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}},
                    {{"name", "eye"}, {"camera", 0}}};
-  const Json pointed = {{"path", "pointer"},
-                        {"extensions", {{"KHR_animation_pointer", {{"pointer", "/nodes/2/rotation"}}}}}};
+  const Json pointed = {
+      {"path", "pointer"},
+      {"extensions", {{"KHR_animation_pointer", {{"pointer", "/nodes/2/extensions/KHR_node_visibility/visible"}}}}}};
   json["animations"] = {
       {{"name", "walk"},
        {"samplers", {{{"input", times}, {"output", turns}}}},
@@ -75,7 +76,8 @@ TEST(MergeAssets, RenumbersWhatTheSecondPartRefersTo) {
   EXPECT_EQ(json["nodes"][6]["camera"], 1);
   const Json& channels = json["animations"][1]["channels"];
   EXPECT_EQ(channels[0]["target"]["node"], 5);
-  EXPECT_EQ(channels[1]["target"]["extensions"]["KHR_animation_pointer"]["pointer"], "/nodes/6/rotation");
+  EXPECT_EQ(channels[1]["target"]["extensions"]["KHR_animation_pointer"]["pointer"],
+            "/nodes/6/extensions/KHR_node_visibility/visible");
   EXPECT_EQ(json["animations"][1]["name"], "walk_2");
   EXPECT_EQ(json["extensionsUsed"].size(), 3u);
 }

@@ -118,7 +118,8 @@ Index addJointNodes(std::vector<gltf::Node>& nodes, const Motion& motion) {
 
 Clip findClip(const Asset& asset, std::string_view name) {
   Warnings ignored;  // those of the whole motion, which is not asked for
-  std::vector<Clip> clips = readClips(asset, animatedSkeleton(asset), ignored);
+  const bool hasClips = !asset.document.animations.empty();
+  std::vector<Clip> clips = readClips(asset, hasClips ? movingSkeleton(asset) : animatedSkeleton(asset), ignored);
   if (name.empty()) return clips.empty() ? Clip() : std::move(clips.front());
   std::vector<std::string> names;
   for (const Clip& clip : clips) names.push_back(clip.name);
@@ -185,10 +186,28 @@ Motion motionOf(const Asset& asset, const AssetSkeleton& skeleton) {
   return motion;
 }
 
+namespace {
+
+// A motion alone is of joints.
+Motion motionAlone(const Asset& asset) {
+  Motion motion = motionOf(asset);
+  for (Index a = 0; a < asset.document.animations.size(); ++a) {
+    const gltf::Animation& animation = asset.document.animations[a];
+    const bool movesShapes =
+        std::any_of(animation.channels.begin(), animation.channels.end(),
+                    [](const gltf::AnimationChannel& channel) { return channelTarget(channel).path == "weights"; });
+    if (movesShapes)
+      motion.warnings.add("motion-shapes", "blend shapes that a motion moves are left out", animation.name);
+  }
+  return motion;
+}
+
+}  // namespace
+
 Motion readMotion(ByteSpan bytes, std::string_view name, const MotionOptions& options, const Resolver& resolver) {
   if (looksLikeBvh(bytes)) return readBvh(bytes, name, options.bvh);
   if (looksLikeNpz(bytes)) return readSmplMotion(bytes, name, options.smpl);
-  return motionOf(readAsset(bytes, name, resolver));
+  return motionAlone(readAsset(bytes, name, resolver));
 }
 
 Motion readMotion(const std::filesystem::path& path, const MotionOptions& options) {

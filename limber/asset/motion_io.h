@@ -40,8 +40,9 @@ AssetSkeleton animatedSkeleton(const Asset& asset);
 AssetSkeleton movingSkeleton(const Asset& asset);
 
 // The clip of that name, in full or behind the last '|' (Blender's exporters put the armature's name before); the first
-// where none is named, and where the document has none an empty one (the rest pose). Over the animatedSkeleton of the
-// asset. Throws Error kBadArgument that lists the names.
+// where none is named, and where the document has none an empty one (the rest pose). Over the movingSkeleton of the
+// asset: without tracks where it moves blend shapes alone. Throws Error kBadArgument that lists the names, and as
+// animatedSkeleton does where there are no clips.
 Clip findClip(const Asset& asset, std::string_view name);
 
 // Is there no mesh, but a skeleton: a skin's, animated nodes, or several nodes?

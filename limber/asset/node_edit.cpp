@@ -69,15 +69,37 @@ ChannelTarget channelTarget(const gltf::AnimationChannel& channel) {
   return {channel.target.node, channel.target.path};
 }
 
+bool removeChannels(gltf::Animation& animation, const std::function<bool(Index, std::string_view)>& drop) {
+  const std::size_t dropped = std::erase_if(animation.channels, [&](const gltf::AnimationChannel& channel) {
+    const ChannelTarget target = channelTarget(channel);
+    return target.node && drop(*target.node, target.path);
+  });
+  if (dropped > 0) removeUnusedSamplers(animation);
+  return dropped > 0;
+}
+
 void removeChannels(Asset& asset, const std::function<bool(Index, std::string_view)>& drop) {
   std::erase_if(asset.document.animations, [&](gltf::Animation& animation) {
-    const std::size_t dropped = std::erase_if(animation.channels, [&](const gltf::AnimationChannel& channel) {
-      const ChannelTarget target = channelTarget(channel);
-      return target.node && drop(*target.node, target.path);
-    });
-    if (dropped > 0) removeUnusedSamplers(animation);
-    return dropped > 0 && animation.channels.empty();
+    return removeChannels(animation, drop) && animation.channels.empty();
   });
+}
+
+void appendChannels(gltf::Animation& to, gltf::Animation& from) {
+  const auto offset = static_cast<Index>(to.samplers.size());
+  for (gltf::AnimationSampler& sampler : from.samplers) to.samplers.push_back(std::move(sampler));
+  for (gltf::AnimationChannel& channel : from.channels) {
+    channel.sampler += offset;
+    to.channels.push_back(std::move(channel));
+  }
+  from.channels.clear();
+}
+
+void moveLastAnimations(gltf::Document& document, std::span<const Index> into) {
+  const std::size_t first = document.animations.size() - into.size();
+  for (std::size_t i = 0; i < into.size(); ++i) {
+    appendChannels(document.animations[into[i]], document.animations[first + i]);
+  }
+  document.animations.resize(first);
 }
 
 void retargetMorphChannels(Asset& asset, Index from, Index to) {

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,6 +33,15 @@ ChannelTarget channelTarget(const gltf::AnimationChannel& channel);
 // Takes animation channels out for which `drop` is true, with the samplers that nothing uses then, and animations that
 // are left empty. `drop` sees the node, if the channel has one, and the path ("translation", ...).
 void removeChannels(Asset& asset, const std::function<bool(Index node, std::string_view path)>& drop);
+
+// The same of one animation, which may be left empty. True if a channel went.
+bool removeChannels(gltf::Animation& animation, const std::function<bool(Index node, std::string_view path)>& drop);
+
+// Puts the channels of one animation behind those of another.
+void appendChannels(gltf::Animation& to, gltf::Animation& from);
+
+// Moves the document's last animations, as many as there are numbers, into those with these numbers.
+void moveLastAnimations(gltf::Document& document, std::span<const Index> into);
 
 // Takes the samplers out that no channel of the animation names, and renumbers the others.
 void removeUnusedSamplers(gltf::Animation& animation);

@@ -23,17 +23,6 @@ Affine frameAbove(const SceneGraph& graph, const AssetSkeleton& skeleton, Index 
   return graph.world[*graph.parent[node]];
 }
 
-// glTF's transform of a direction at right angles to the surface: the cofactors of the linear part.
-Vec3f turnNormal(const Mat3& linear, const Vec3f& normal) {
-  Mat3 cofactors;
-  cofactors.col(0) = linear.col(1).cross(linear.col(2));
-  cofactors.col(1) = linear.col(2).cross(linear.col(0));
-  cofactors.col(2) = linear.col(0).cross(linear.col(1));
-  const Vec3 turned = cofactors * normal.cast<double>();
-  const double length = turned.norm();
-  return length > 0 ? Vec3f((turned / length).cast<float>()) : Vec3f(Vec3f::Zero());
-}
-
 std::span<const float> floatsOf(std::span<const Vec3f> vectors, const PrimitiveInstance& instance) {
   static_assert(sizeof(Vec3f) == 3 * sizeof(float));
   return {vectors[instance.firstVertex].data(), std::size_t{3} * instance.vertexCount};
@@ -79,6 +68,16 @@ bool canMorph(const gltf::Document& document, Index node) {
 }
 
 }  // namespace
+
+Vec3f turnNormal(const Mat3& linear, const Vec3f& normal) {
+  Mat3 cofactors;
+  cofactors.col(0) = linear.col(1).cross(linear.col(2));
+  cofactors.col(1) = linear.col(2).cross(linear.col(0));
+  cofactors.col(2) = linear.col(0).cross(linear.col(1));
+  const Vec3 turned = cofactors * normal.cast<double>();
+  const double length = turned.norm();
+  return length > 0 ? Vec3f((turned / length).cast<float>()) : Vec3f(Vec3f::Zero());
+}
 
 Pose readNodePose(const Asset& asset, const AssetSkeleton& skeleton) {
   const SceneGraph graph = readSceneGraph(asset.document);

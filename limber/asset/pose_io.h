@@ -17,6 +17,10 @@ Pose readNodePose(const Asset& asset, const AssetSkeleton& skeleton);
 // Throws Error kBadData naming the node where a root stands below a node without an inverse (a scale of 0).
 void writeNodePose(Asset& asset, const AssetSkeleton& skeleton, const Pose& pose);
 
+// glTF's transform of a direction at right angles to the surface: by the cofactors of the linear part, of length 1 or
+// 0.
+Vec3f turnNormal(const Mat3& linear, const Vec3f& normal);
+
 // #S normals of the vertices of `geometry` in world space, zero where the file has none.
 std::vector<Vec3f> readNormals(const Asset& asset, const Geometry& geometry);
 

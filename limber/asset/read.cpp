@@ -6,6 +6,7 @@
 #include <map>
 #include <new>
 
+#include "limber/asset/animation_repair.h"
 #include "limber/asset/bvh_read.h"
 #include "limber/asset/codecs.h"
 #include "limber/asset/extensions.h"
@@ -65,6 +66,7 @@ Asset readGltf(ByteSpan bytes, const Resolver& resolver) {
     asset.format = "gltf";
   }
   decompress(asset);
+  resolveNodePointers(asset.document);
   warnOfUnknownExtensions(asset);
   return asset;
 }
@@ -138,6 +140,7 @@ Asset readAsset(ByteSpan bytes, std::string_view name, const Resolver& resolver)
     asset.name = name;
     checkAsset(asset);
     repairWeights(asset);
+    startAtZero(asset);
     return asset;
   } catch (const Error& error) {
     throwWithin(error, name);

@@ -8,27 +8,14 @@
 #include "limber/asset/accessor_sweep.h"
 #include "limber/asset/clip_io.h"
 #include "limber/asset/compact_buffers.h"
+#include "limber/asset/moving_parents.h"
 #include "limber/asset/node_edit.h"
 
 namespace limber {
 
-namespace {
-
-// Puts the channels of one animation behind those of another.
-void appendChannels(gltf::Animation& to, gltf::Animation& from) {
-  const auto offset = static_cast<Index>(to.samplers.size());
-  for (gltf::AnimationSampler& sampler : from.samplers) to.samplers.push_back(std::move(sampler));
-  for (gltf::AnimationChannel& channel : from.channels) {
-    channel.sampler += offset;
-    to.channels.push_back(std::move(channel));
-  }
-  from.channels.clear();
-}
-
-}  // namespace
-
 std::vector<std::string> replaceClips(Asset& asset, const AssetSkeleton& skeleton, std::span<const Clip> clips,
                                       const std::optional<TimeSpan>& cut) {
+  settleMovingParents(asset, skeleton);
   const AccessorSweep accessors(asset);
   const BufferViewSweep views(asset);
   const std::vector<Index>& joints = skeleton.jointNode;

@@ -1,5 +1,6 @@
 #include "limber/asset/rest_pose.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
@@ -156,20 +157,25 @@ class VertexMover {
   std::size_t sharedVertices_ = 0;
 };
 
-// Binds every skin that a mesh is shown with where its joints' nodes stand now, its vertices with it.
+// Binds skins that meshes are shown with where joints are now, their vertices with them.
 class Rebinder {
  public:
-  // stretches  by node, of those that have one
-  Rebinder(Asset& asset, std::map<Index, Mat3> stretches)
-      : asset_(asset), graph_(readSceneGraph(asset.document)), stretches_(std::move(stretches)) {}
+  // jointWorld  #nodes
+  // stretches   by node, of those that have one
+  Rebinder(Asset& asset, std::vector<Affine> jointWorld, std::map<Index, Mat3> stretches)
+      : asset_(asset), jointWorld_(std::move(jointWorld)), stretches_(std::move(stretches)) {}
 
+  // Returns how many vertices are shared by joints that moved against each other.
+  //
   // skinToWorld  #skins: where each skin's mesh space lies in the world; it stays there
-  void run(const std::vector<Affine>& skinToWorld) {
+  // isMoved      #skins: which are bound anew
+  std::size_t run(const std::vector<Affine>& skinToWorld, const std::vector<bool>& isMoved) {
     findUses();
     std::map<Index, VertexMover> movers;
     std::size_t sharedVertices = 0;
     for (const auto& [use, nodes] : nodesOfUse_) {
       const auto [mesh, skin] = use;
+      if (!isMoved[skin]) continue;
       auto mover = movers.find(skin);
       if (mover == movers.end()) {
         mover = movers.emplace(skin, VertexMover(asset_, rebind(skin, skinToWorld[skin]))).first;
@@ -179,10 +185,7 @@ class Rebinder {
       for (const Index node : nodes) asset_.document.nodes[node].mesh = target;
     }
     for (const auto& [skin, mover] : movers) sharedVertices += mover.sharedVertices();
-    asset_.warnings.add(
-        "shared-vertices",
-        "vertices are shared by joints that moved against each other: clips show them a little otherwise", {},
-        sharedVertices);
+    return sharedVertices;
   }
 
  private:
@@ -208,7 +211,7 @@ class Rebinder {
     Maps maps;
     std::vector<float> inverseBinds;
     for (std::size_t j = 0; j < binding.joints.size(); ++j) {
-      const Affine& joint = graph_.world[binding.joints[j]];
+      const Affine& joint = jointWorld_[binding.joints[j]];
       const auto stretch = stretches_.find(binding.joints[j]);
       Affine inJoint = binding.inverseBinds[j];
       if (stretch != stretches_.end()) inJoint = stretch->second * inJoint;
@@ -227,7 +230,7 @@ class Rebinder {
   }
 
   Asset& asset_;
-  SceneGraph graph_;
+  std::vector<Affine> jointWorld_;
   std::map<Index, Mat3> stretches_;
   std::map<std::pair<Index, Index>, std::vector<Index>> nodesOfUse_;  // by mesh and skin
   std::vector<Index> usesLeft_;                                       // #meshes, by skins, and one without a skin
@@ -302,9 +305,78 @@ void setRestPose(Asset& asset, const AssetSkeleton& skeleton, const Pose& pose, 
   const SceneGraph before = readSceneGraph(asset.document);
   const std::vector<Affine> skinToWorld = readBindPose(asset, before).skinToWorld;
   writeNodePose(asset, skeleton, pose);
-  Rebinder(asset, std::move(stretches)).run(skinToWorld);
+  const std::vector<bool> all(skinToWorld.size(), true);
+  const std::size_t sharedVertices =
+      Rebinder(asset, readSceneGraph(asset.document).world, std::move(stretches)).run(skinToWorld, all);
+  asset.warnings.add("shared-vertices",
+                     "vertices are shared by joints that moved against each other: clips show them a little otherwise",
+                     {}, sharedVertices);
   holdInClips(asset, changedParts(before, readSceneGraph(asset.document), skeleton.jointNode));
   unused.sweep(asset);
+}
+
+namespace {
+
+bool isFlat(const Affine& map) {
+  return !map.inverse(Eigen::Affine).matrix().allFinite();
+}
+
+// #skins: of those that were bound elsewhere, which can be bound in the pose?
+std::vector<bool> skinsToJoin(const Asset& asset, const BindPose& pose) {
+  std::vector<bool> result(asset.document.skins.size(), false);
+  for (const Index skin : skinsBoundElsewhere(asset, pose)) {
+    const std::vector<Index>& joints = asset.document.skins[skin].joints;
+    result[skin] = !isFlat(pose.skinToWorld[skin]) &&
+                   std::none_of(joints.begin(), joints.end(), [&](Index node) { return isFlat(pose.nodeWorld[node]); });
+  }
+  return result;
+}
+
+// A few kilobytes of nodes must not ask for gigabytes of copies, one for each skin that a mesh is shown with.
+void checkCopies(const gltf::Document& document, const std::vector<bool>& isJoined) {
+  constexpr std::uint64_t kMaxCopied = 16'000'000;
+  std::set<std::pair<Index, Index>> uses;
+  std::set<Index> meshes;
+  std::uint64_t copied = 0;
+  for (const gltf::Node& node : document.nodes) {
+    if (!node.mesh || !node.skin || !isJoined[*node.skin] || !uses.insert({*node.mesh, *node.skin}).second) continue;
+    if (meshes.insert(*node.mesh).second) continue;
+    for (const gltf::Primitive& primitive : document.meshes[*node.mesh].primitives) {
+      const std::optional<Index> position = primitive.attributes.find("POSITION");
+      if (position) copied += document.accessors[*position].count * (1 + primitive.targets.size());
+    }
+    if (copied > kMaxCopied) {
+      throw Error(ErrorCode::kLimit, "has meshes of too many vertices that are shown with several skins");
+    }
+  }
+}
+
+void bindInOne(Asset& asset, const BindPose& pose, const std::vector<bool>& isJoined) {
+  checkCopies(asset.document, isJoined);
+  const AccessorSweep unused(asset);
+  Rebinder(asset, pose.nodeWorld, {}).run(pose.skinToWorld, isJoined);
+  asset.warnings.add("joined-binds", "skins that were bound in another pose than their joints are brought to one", {},
+                     static_cast<std::size_t>(std::count(isJoined.begin(), isJoined.end(), true)));
+  unused.sweep(asset);
+}
+
+}  // namespace
+
+bool joinBindPoses(Asset& asset) {
+  const BindPose pose = readBindPose(asset, readSceneGraph(asset.document));
+  const std::vector<bool> isJoined = skinsToJoin(asset, pose);
+  if (std::find(isJoined.begin(), isJoined.end(), true) == isJoined.end()) return false;
+  bindInOne(asset, pose, isJoined);
+  return true;
+}
+
+std::optional<Asset> withJoinedBinds(const Asset& asset) {
+  const BindPose pose = readBindPose(asset, readSceneGraph(asset.document));
+  const std::vector<bool> isJoined = skinsToJoin(asset, pose);
+  if (std::find(isJoined.begin(), isJoined.end(), true) == isJoined.end()) return std::nullopt;
+  std::optional<Asset> joined = asset.clone();
+  bindInOne(*joined, pose, isJoined);
+  return joined;
 }
 
 void setNodePose(Asset& asset, const AssetSkeleton& skeleton, const Pose& pose) {

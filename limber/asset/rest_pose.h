@@ -1,6 +1,7 @@
 // A new rest pose for a rigged Asset: the pose that it stands in becomes the one that it is bound in.
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "limber/asset/rig_io.h"
@@ -27,6 +28,15 @@ namespace limber {
 // stretch   #J maps in the joints' own frames, by which what is bound to each is deformed on the way; what hangs on the
 //           joint, other joints among it, is not. Empty: none
 void setRestPose(Asset& asset, const AssetSkeleton& skeleton, const Pose& pose, std::span<const Mat3> stretch = {});
+
+// Brings the vertices of skins that were bound in another pose than the joints they share (skinsBoundElsewhere) to the
+// bind pose of the whole, as setRestPose does for all, with inverse binds that say so. Nodes and clips stay. True if
+// there was such a skin (warning "joined-binds"). Throws Error kLimit where copies of meshes that are shown with
+// several skins would be of many millions of vertices.
+bool joinBindPoses(Asset& asset);
+
+// The same of a copy; none where there is nothing to do.
+std::optional<Asset> withJoinedBinds(const Asset& asset);
 
 // The joint nodes alone stand in that pose: the surface follows by its weights, skins stay bound where they are, and
 // clips show every vertex where they did, held by keys as above. Throws as writeNodePose does.

@@ -265,6 +265,64 @@ TEST(RestPose, ClipsLookTheSameAndThePoseIsTheBindPose) {
   }
 }
 
+// The coat was put on in another pose than the body: by the file each vertex goes with its own skin's inverse binds.
+TEST(RestPose, ASkinBoundInAnotherPoseIsBroughtToThatOfItsJoints) {
+  TwoSkins c = dressedCharacter();
+  for (const Index joint : {c.chest, c.hip}) {
+    c.bind[joint] = Affine(Eigen::Translation3d(c.random.vector()) * c.random.rotation());
+  }
+  const Index other = c.scene.addSkin({c.chest, c.hip}, c.inverses({c.chest, c.hip}));
+  std::vector<gltf::Skin>& skins = c.scene.asset().document.skins;
+  skins[c.coatSkin].inverseBindMatrices = skins[other].inverseBindMatrices;
+  skins.pop_back();
+  Asset asset = c.scene.build();
+  const Asset before = asset.clone();
+  const BindPose bind = readBindPose(asset, readSceneGraph(asset.document));
+  EXPECT_THAT(skinsBoundElsewhere(asset, bind), ::testing::ElementsAre(c.coatSkin));
+  ASSERT_TRUE(joinBindPoses(asset));
+  checkAsset(asset);
+  expectClipsLookTheSame(before, asset);
+  ASSERT_EQ(asset.warnings.items().size(), 1u);
+  EXPECT_EQ(asset.warnings.items()[0].kind, "joined-binds");
+  EXPECT_FALSE(joinBindPoses(asset));
+  EXPECT_FALSE(withJoinedBinds(asset));
+
+  // What collectGeometry shows now is what the joints make of it in the bind pose.
+  const BindPose after = readBindPose(asset, readSceneGraph(asset.document));
+  std::vector<Transform> locals;
+  const SceneGraph graph = readSceneGraph(asset.document);
+  for (Index n = 0; n < graph.nodeCount(); ++n) {
+    const std::optional<Index> parent = graph.parent[n];
+    const Affine above = parent ? after.nodeWorld[*parent] : Affine::Identity();
+    locals.push_back(decompose(above.inverse(Eigen::Affine) * after.nodeWorld[n]));
+  }
+  std::vector<Vec3> collected;
+  for (const Vec3f& position : collectGeometry(asset).positions) collected.push_back(position.cast<double>());
+  expectSame(show(before, locals).positions, collected, "positions in the bind pose");
+}
+
+TEST(RestPose, ASkinWithoutInverseBindsIsBoundByTheIdentity) {
+  TwoSkins c;
+  const Index mesh = c.rigidMesh(4);
+  c.scene.asset().document.skins[c.bodySkin].inverseBindMatrices.reset();
+  c.scene.addScene({c.hip, c.scene.addNode({{"name", "body"}, {"mesh", mesh}, {"skin", c.bodySkin}})});
+  c.addTurn(c.chest, 3);
+  const Asset before = c.scene.build();
+  const std::optional<Asset> joined = withJoinedBinds(before);
+  ASSERT_TRUE(joined);
+  checkAsset(*joined);
+  EXPECT_TRUE(before.warnings.empty());
+  expectClipsLookTheSame(before, *joined);
+  std::vector<Vec3> collected;
+  for (const Vec3f& position : collectGeometry(*joined).positions) collected.push_back(position.cast<double>());
+  expectSame(show(before, standing(before)).positions, collected, "positions as the nodes stand");
+}
+
+TEST(RestPose, SkinsOfOnePoseStayAsTheyAre) {
+  TwoSkins c = dressedCharacter();
+  EXPECT_FALSE(withJoinedBinds(c.scene.build()));
+}
+
 TEST(RestPose, AMeshThatIsShownWithoutASkinTooStaysAsItIsThere) {
   TwoSkins c;
   const Index mesh = c.rigidMesh(2);

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <limits>
+#include <string>
 #include <string_view>
 
 namespace limber {
@@ -72,6 +74,18 @@ int parseExponent(const char*& at, const char* end) {
   return negative ? -exponent : exponent;
 }
 
+bool isLetter(char c) {
+  return (c | 0x20) >= 'a' && (c | 0x20) <= 'z';
+}
+
+// "(ind)", "(snan)" behind a "nan", as Windows programs write it.
+void skipKindOfNan(const char*& at, const char* end) {
+  if (at == end || *at != '(') return;
+  const char* next = at + 1;
+  while (next != end && isLetter(*next)) ++next;
+  if (next != end && *next == ')') at = next + 1;
+}
+
 std::optional<double> parseWord(const char*& at, const char* end) {
   struct Word {
     std::string_view text;
@@ -86,9 +100,25 @@ std::optional<double> parseWord(const char*& at, const char* end) {
     for (std::size_t i = 0; i < word.text.size(); ++i) same = same && (at[i] | 0x20) == word.text[i];
     if (!same) continue;
     at += word.text.size();
+    if (std::isnan(word.value)) skipKindOfNan(at, end);
     return word.value;
   }
   return std::nullopt;
+}
+
+// "1.#IND", "1.#QNAN00", "1.#INF" of older Windows programs; `at` is behind the point.
+std::optional<double> parseWindowsWord(const char*& at, const char* end) {
+  if (at == end || *at != '#') return std::nullopt;
+  const char* next = at + 1;
+  const char* const word = next;
+  while (next != end && isLetter(*next)) ++next;
+  std::string name(word, next);
+  for (char& c : name) c = static_cast<char>(c & ~0x20);
+  const bool isInfinite = name == "INF";
+  if (!isInfinite && name != "IND" && name != "QNAN" && name != "SNAN") return std::nullopt;
+  while (isDigit(next, end)) ++next;
+  at = next;
+  return isInfinite ? std::numeric_limits<double>::infinity() : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace
@@ -106,7 +136,9 @@ std::optional<double> parseNumber(const char*& at, const char* end, bool* commaI
     for (++next; isDigit(next, end); ++next) number.add(*next, true);
   }
   double value = 0;
-  if (number.any) {
+  if (const std::optional<double> none = point ? parseWindowsWord(next, end) : std::nullopt) {
+    value = *none;
+  } else if (number.any) {
     value = scaled(number.digits, number.exponent + parseExponent(next, end));
   } else {
     const std::optional<double> word = point || comma ? std::nullopt : parseWord(next, end);

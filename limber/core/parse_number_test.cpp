@@ -60,6 +60,18 @@ TEST(ParseNumber, StopsBehindTheNumber) {
   EXPECT_EQ(parse("1,5"), std::make_pair(1.0, std::size_t{1}));
 }
 
+TEST(ParseNumber, ReadsWhatWindowsProgramsWriteForNoNumber) {
+  for (const char* text : {"nan", "-nan(ind)", "nan(snan)", "-1.#IND", "1.#QNAN0", "1.#IND00", "1.#SNAN"}) {
+    const auto [value, length] = parse(text);
+    EXPECT_TRUE(std::isnan(value)) << text;
+    EXPECT_EQ(length, std::string(text).size()) << text;
+  }
+  EXPECT_EQ(parse("1.#INF00"), std::make_pair(double{INFINITY}, std::size_t{8}));
+  EXPECT_EQ(parse("-1.#INF"), std::make_pair(-double{INFINITY}, std::size_t{7}));
+  EXPECT_EQ(parse("1.#OTHER"), std::make_pair(1.0, std::size_t{2}));
+  EXPECT_EQ(parse("nan(1").second, 3u);
+}
+
 TEST(ParseNumber, RefusesWhatIsNone) {
   for (const char* text : {"", "-", "+", ".", "-.", "e5", "abc", "--1", "\xff", "in", "na"}) {
     EXPECT_EQ(parse(text).second, 0u) << text;

@@ -7,7 +7,9 @@
 
 #include "limber/asset/accessor.h"
 #include "limber/asset/geometry.h"
+#include "limber/asset/rest_pose.h"
 #include "limber/asset/rig_io.h"
+#include "limber/asset/shape_surface.h"
 #include "limber/mesh/components.h"
 #include "limber/mesh/prepare.h"
 
@@ -108,7 +110,11 @@ std::vector<ClipInfo> inspectClips(const Asset& asset) {
 // The geometry of the scene; empty where it has no triangle.
 Geometry sceneGeometry(const Asset& asset) {
   try {
-    return collectGeometry(asset);
+    const std::optional<Asset> joined = withJoinedBinds(asset);
+    const Asset& whole = joined ? *joined : asset;
+    Geometry geometry = collectGeometry(whole);
+    moveByShapes(whole, readShapeWeights(whole), geometry);
+    return geometry;
   } catch (const Error& error) {
     if (error.code() != ErrorCode::kBadData) throw;
     return {};

@@ -10,7 +10,9 @@
 #include <fmt/format.h>
 
 #include "limber/asset/geometry.h"
+#include "limber/asset/rest_pose.h"
 #include "limber/asset/rig_io.h"
+#include "limber/asset/shape_surface.h"
 #include "limber/core/known_error.h"
 #include "limber/mesh/components.h"
 #include "limber/mesh/prepare.h"
@@ -259,8 +261,10 @@ AutoRigReport runStages(Asset& asset, const AutoRigOptions& options, Progress& p
 
   progress.stage("read geometry");
   Rollback rollback(asset);
+  joinBindPoses(asset);
   if (options.existingRig == ExistingRig::kReplace && hasRig(asset)) takeRigOut(asset, report);
-  const Geometry geometry = collectGeometry(asset);
+  Geometry geometry = collectGeometry(asset);
+  moveByShapes(asset, readShapeWeights(asset), geometry);
 
   progress.stage("weld");
   const PreparedMesh prepared = prepareMesh(geometry.positions, geometry.triangles);

@@ -10,6 +10,7 @@
 #include "limber/asset/compact_buffers.h"
 #include "limber/asset/geometry.h"
 #include "limber/asset/motion_io.h"
+#include "limber/asset/moving_parents.h"
 #include "limber/asset/node_edit.h"
 #include "limber/asset/root_joint.h"
 #include "limber/asset/trim_animation.h"
@@ -97,29 +98,9 @@ void removeJointChannels(Asset& asset, const AssetSkeleton& skeleton, std::span<
   std::vector<bool> isJoint(asset.document.nodeCount(), false);
   for (const Index node : skeleton.jointNode) isJoint[node] = true;
   for (const Index a : animations) {
-    gltf::Animation& animation = asset.document.animations[a];
-    std::erase_if(animation.channels, [&](const gltf::AnimationChannel& channel) {
-      const ChannelTarget target = channelTarget(channel);
-      return target.node && isJoint[*target.node] && target.path.rfind("weights", 0) != 0;
-    });
-    removeUnusedSamplers(animation);
+    removeChannels(asset.document.animations[a],
+                   [&](Index node, std::string_view path) { return isJoint[node] && path.rfind("weights", 0) != 0; });
   }
-}
-
-// Moves the animations that were added last into those that they are of.
-void mergeAnimations(gltf::Document& document, std::span<const Index> animations) {
-  const std::size_t first = document.animations.size() - animations.size();
-  for (std::size_t i = 0; i < animations.size(); ++i) {
-    gltf::Animation& into = document.animations[animations[i]];
-    gltf::Animation& from = document.animations[first + i];
-    const auto shift = static_cast<Index>(into.samplers.size());
-    for (gltf::AnimationSampler& sampler : from.samplers) into.samplers.push_back(std::move(sampler));
-    for (gltf::AnimationChannel& channel : from.channels) {
-      channel.sampler += shift;
-      into.channels.push_back(std::move(channel));
-    }
-  }
-  document.animations.resize(first);
 }
 
 CarriedPoints carriedBy(const Asset& asset, const AssetSkeleton& skeleton) {
@@ -148,6 +129,7 @@ std::vector<ClipEditReport> editClips(Asset& asset, std::span<const std::string>
     animations.push_back(static_cast<Index>(found - all.begin()));
   }
   const BufferViewSweep views(asset);
+  settleMovingParents(asset, animatedSkeleton(asset), animations);
   const RootedSkeleton rooted = withRootJoint(asset, edits);
   const AccessorSweep accessors(asset);  // after that: accessors have other numbers then
   std::vector<Clip> clips;
@@ -176,7 +158,7 @@ std::vector<ClipEditReport> editClips(Asset& asset, std::span<const std::string>
     if (loop) loopAnimation(asset, asset.document.animations[animations[c]], {loop->begin, loop->end});
   }
   addClips(asset, rooted.skeleton, clips, {edits.tolerance.has_value()});
-  mergeAnimations(asset.document, animations);
+  moveLastAnimations(asset.document, animations);
   accessors.sweep(asset);
   views.sweep(asset);
   return reports;

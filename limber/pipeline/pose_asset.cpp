@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "limber/asset/pose_io.h"
+#include "limber/asset/rest_pose.h"
 #include "limber/core/numbers.h"
 #include "limber/ik/ik_solver.h"
 #include "limber/pipeline/edit_text.h"
@@ -85,21 +86,32 @@ std::vector<ReachReport> editPose(const Skeleton& skeleton, Pose& pose, const Po
 }
 
 AssetPoser::AssetPoser(const Asset& asset, const AssetSkeleton& skeleton, const Deformer& deformer)
-    : skeleton_(skeleton.skeleton), deformer_(deformer) {
-  bound_.geometry = collectGeometry(asset);
-  bound_.normals = readNormals(asset, bound_.geometry);
-  weights_ = readWeights(asset, bound_.geometry, skeleton);
+    : joined_(withJoinedBinds(asset)),
+      asset_(joined_ ? *joined_ : asset),
+      skeleton_(skeleton.skeleton),
+      deformer_(deformer) {
+  bound_.geometry = collectGeometry(asset_);
+  bound_.normals = readNormals(asset_, bound_.geometry);
+  moveByShapes(asset_, readShapeWeights(asset_), bound_.geometry, &bound_.normals);
+  if (joined_) instances_ = collectGeometry(asset).instances;
+  weights_ = readWeights(asset_, bound_.geometry, skeleton);
   normalizeWeights(weights_);
   centers_ = restPositions(skeleton_);
   prepared_ = prepareDeformer(deformer, {bound_.geometry.positions, bound_.geometry.triangles, weights_},
                               skeleton_.jointCount());
 }
 
-PosedGeometry AssetPoser::posed(const Pose& pose) const {
-  PosedGeometry result = bound_;
+PosedGeometry AssetPoser::posed(const Pose& pose, const ShapeWeights& shapes) const {
+  PosedGeometry shaped = bound_;
+  moveByShapes(asset_, shapes, shaped.geometry, &shaped.normals);
+  return moved(std::move(shaped), pose);
+}
+
+PosedGeometry AssetPoser::moved(PosedGeometry result, const Pose& pose) const {
   std::vector<Vec3f>& positions = result.geometry.positions;
   const std::vector<Affine> transforms = skinTransforms(skeleton_, pose);
   std::vector<float> scratch(deformer_.scratchSize(positions.size(), skeleton_.jointCount()));
+  if (joined_) result.geometry.instances = instances_;
   deformer_.deform({positions, result.normals, weights_, transforms, centers_, prepared_.get()},
                    {positions, result.normals}, scratch);
   return result;

@@ -1,12 +1,14 @@
 // Poses a rigged Asset: the joints' nodes, or the mesh itself for good.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "limber/asset/asset.h"
 #include "limber/asset/geometry.h"
 #include "limber/asset/rig_io.h"
+#include "limber/asset/shape_surface.h"
 #include "limber/ik/ik_problem.h"
 #include "limber/ik/limits.h"
 #include "limber/pipeline/pose_edits.h"
@@ -35,7 +37,7 @@ std::vector<ReachReport> editPose(const Skeleton& skeleton, Pose& pose, const Po
                                   const JointLimits* limits = nullptr, const PoseOptions& options = {});
 
 // The vertices of a rigged asset as its joints stand in `pose`, in world space, with normals where the file has some
-// (zero elsewhere).
+// (zero elsewhere); blend shapes come first, with the weights that the nodes have.
 //
 // skeleton  readSkeleton(asset) of the asset as it is: where a bind pose lies in the world is told from how the nodes
 //           stand, so a skeleton read before writeNodePose is not that of the asset after it
@@ -47,18 +49,27 @@ struct PosedGeometry {
 PosedGeometry posedGeometry(const Asset& asset, const AssetSkeleton& skeleton, const Pose& pose,
                             const Deformer& deformer = kLinearBlendDeformer);
 
-// The same for many poses: the asset is read and what the deformer needs prepared once.
+// The same for many poses: the asset, which must outlive it, is read and what the deformer needs prepared once.
 class AssetPoser {
  public:
   AssetPoser(const Asset& asset, const AssetSkeleton& skeleton, const Deformer& deformer);
+  AssetPoser(const AssetPoser&) = delete;
+  AssetPoser& operator=(const AssetPoser&) = delete;
 
-  PosedGeometry posed(const Pose& pose) const;
+  // With blend shapes as the nodes have them, or with weights of readShapeWeights(asset, ...).
+  PosedGeometry posed(const Pose& pose) const { return moved(bound_, pose); }
+  PosedGeometry posed(const Pose& pose, const ShapeWeights& shapes) const;
   const SkinWeights& weights() const { return weights_; }  // #S rows, each with a sum of 1 or 0
 
  private:
+  PosedGeometry moved(PosedGeometry surface, const Pose& pose) const;
+
+  std::optional<Asset> joined_;  // where skins were bound in several poses
+  const Asset& asset_;           // that, or the caller's
   Skeleton skeleton_;
   const Deformer& deformer_;
   PosedGeometry bound_;
+  std::vector<PrimitiveInstance> instances_;  // of joined_: as the caller's asset has them
   SkinWeights weights_;
   std::vector<Vec3> centers_;  // of joints
   std::shared_ptr<const DeformPreparation> prepared_;

@@ -1,5 +1,7 @@
 #include "limber/pipeline/pose_asset.h"
 
+#include <algorithm>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -190,6 +192,40 @@ TEST(AssetPoser, PosesAgainAndAgainByEveryDeformer) {
       EXPECT_LT((still.geometry.positions[v] - bound.positions[v]).norm(), 1e-5f) << deformer.name << " " << v;
     }
     for (const Vec3f& normal : bent.normals) EXPECT_NEAR(normal.norm(), 1, 1e-4) << deformer.name;
+  }
+}
+
+// A shape that moves all by half a metre along +Z: as if the vertices were stored there.
+TEST(PoseAsset, BlendShapesComeBeforeTheSkin) {
+  Asset asset = riggedStrip(), moved = riggedStrip();
+  const auto meshOf = [](Asset& of) -> gltf::Mesh& {
+    const auto shows = [](const gltf::Node& node) { return node.skin.has_value(); };
+    const std::vector<gltf::Node>& nodes = of.document.nodes;
+    return of.document.meshes[*std::find_if(nodes.begin(), nodes.end(), shows)->mesh];
+  };
+  std::vector<float> offsets;
+  for (int v = 0; v < 8; ++v) offsets.insert(offsets.end(), {0, 0, 0.5f});
+  gltf::Mesh& mesh = meshOf(asset);
+  mesh.primitives[0].targets.emplace_back().set("POSITION", addFloatAccessor(asset, offsets, 3, kVertexTarget, true));
+  mesh.weights = {1};
+  gltf::Attributes& attributes = meshOf(moved).primitives[0].attributes;
+  std::vector<float> positions = readFloats(moved, *attributes.find("POSITION"));
+  for (std::size_t i = 2; i < positions.size(); i += 3) positions[i] += 0.5f;
+  attributes.set("POSITION", addFloatAccessor(moved, positions, 3, kVertexTarget, true));
+
+  const AssetSkeleton skeleton = readSkeleton(asset);
+  Pose pose = readNodePose(asset, skeleton);
+  editPose(skeleton.skeleton, pose, turned("knee=x:70"));
+  const std::vector<Vec3f> wanted = posedGeometry(moved, skeleton, pose).geometry.positions;
+  const AssetPoser poser(asset, skeleton, kLinearBlendDeformer);
+  const std::vector<Vec3f> posed = poser.posed(pose).geometry.positions;
+  ShapeWeights none = readShapeWeights(asset);
+  for (std::vector<float>& weights : none) weights.assign(weights.size(), 0.0f);
+  const std::vector<Vec3f> plain = poser.posed(pose, none).geometry.positions;
+  const std::vector<Vec3f> before = posedGeometry(riggedStrip(), skeleton, pose).geometry.positions;
+  for (std::size_t v = 0; v < wanted.size(); ++v) {
+    EXPECT_LT((posed[v] - wanted[v]).norm(), 1e-5f) << v;
+    EXPECT_LT((plain[v] - before[v]).norm(), 1e-6f) << v;
   }
 }
 

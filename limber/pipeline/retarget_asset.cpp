@@ -13,6 +13,7 @@
 #include "limber/motion_mix/planted_feet.h"
 #include "limber/pipeline/stand_upright.h"
 #include "limber/skeleton/clip_edit.h"
+#include "limber/skeleton/moving_scales.h"
 
 namespace limber {
 
@@ -55,6 +56,14 @@ void warnOfDoubts(const SkeletonMap& map, const Motion& motion, const Skeleton& 
       fmt::format("{}: {}", motion.name, doubtful.front()), doubtful.size());
 }
 
+// A clip for another body has no scales.
+void warnOfScales(const Motion& motion, const Clip& clip, Warnings& warnings) {
+  const std::vector<Index> joints = jointsWithScales(motion.skeleton, clip);
+  if (joints.empty()) return;
+  warnings.add("motion-scales", "scales of joints that the motion changes are left out",
+               fmt::format("{}: {}", motion.name, motion.skeleton.joints[joints.front()].name), joints.size());
+}
+
 // Null, with a warning, where the character has a skin whose surface cannot be read: it moves all the same.
 std::shared_ptr<const BodySkin> bodySkinOf(Asset& asset) {
   try {
@@ -88,6 +97,7 @@ CharacterClips retargetedClips(Asset& asset, const Motion& given, const Retarget
   for (std::size_t c = 0; c < motion.clips.size(); ++c) {
     const Clip& clip = motion.clips[c];
     const double rate = options.frameRate.value_or(frameRateOf(motion, c));
+    warnOfScales(motion, clip, asset.warnings);
     ClipWithContacts& made = result.clips.emplace_back();
     made.clip = retargetClip(method, motion.skeleton, clip, character.skeleton, map, retarget, rate);
     made.clip.name = motion.clips.size() == 1 ? motion.name : clip.name;

@@ -7,12 +7,12 @@
 
 namespace limber {
 
-std::vector<double> clipMoments(const Clip& clip, int count, bool withEnd) {
+std::vector<double> clipMoments(double duration, int count, bool withEnd) {
   if (count < 1) throw Error(ErrorCode::kBadArgument, "a clip is shown in one picture at least");
   std::vector<double> moments;
   moments.reserve(static_cast<std::size_t>(count));
   const int steps = std::max(1, withEnd ? count - 1 : count);
-  for (int i = 0; i < count; ++i) moments.push_back(clip.duration() * i / steps);
+  for (int i = 0; i < count; ++i) moments.push_back(duration * i / steps);
   return moments;
 }
 

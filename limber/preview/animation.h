@@ -12,7 +12,7 @@
 namespace limber {
 
 // `count` moments from the clip's start to its end, evenly: both ends for a sheet; for a loop without the end.
-std::vector<double> clipMoments(const Clip& clip, int count, bool withEnd);
+std::vector<double> clipMoments(double duration, int count, bool withEnd);
 
 // One picture for each moment, all in one frame that holds the whole movement. Gets the first scene's warnings. The
 // scene is made twice for each moment, so that one alone is in memory.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "limber/asset/accessor.h"
 #include "limber/asset/clip_io.h"
 #include "limber/asset/motion_io.h"
 #include "limber/asset/pose_io.h"
@@ -46,6 +47,32 @@ TEST(Animation, ShowsTheSceneAtAMomentOfAClip) {
   EXPECT_LT((later.joints[0].position - still.joints[0].position - Vec3(0, 0.25, 0)).norm(), 1e-6);
 }
 
+// A clip that moves blend shapes alone, of a model without joints.
+TEST(Animation, ShowsBlendShapesAtAMoment) {
+  Asset asset = makeSample("stool");
+  const Geometry geometry = collectGeometry(asset);
+  const PrimitiveInstance& first = geometry.instances.front();
+  std::vector<float> offsets;
+  for (Index v = 0; v < first.vertexCount; ++v) offsets.insert(offsets.end(), {0, 1, 0});
+  gltf::Document& document = asset.document;
+  document.meshes[first.mesh].primitives[first.primitive].targets.emplace_back().set(
+      "POSITION", addFloatAccessor(asset, offsets, 3, kVertexTarget, true));
+  const std::vector<float> times = {0, 2}, weights = {0, 1};
+  const Index input = addFloatAccessor(asset, times, 1, 0, true), output = addFloatAccessor(asset, weights, 1);
+  gltf::Animation& rise = document.animations.emplace_back();
+  rise.name = "rise";
+  rise.samplers.push_back({{}, input, output});
+  rise.channels.push_back({{}, 0, {{}, first.node, "weights"}});
+  const Clip found = findClip(asset, "rise");
+  EXPECT_EQ(found.duration(), 0);
+  EXPECT_EQ(SceneMaker(asset).duration(found), 2);
+  const Scene still = makeScene(asset), later = sceneAt(asset, found, 0.5);
+  const Vec3 up = first.toWorld.linear() * Vec3(0, 0.25, 0);
+  for (std::size_t v = first.firstVertex; v < first.firstVertex + first.vertexCount; ++v) {
+    EXPECT_LT((later.positions[v] - still.positions[v] - up.cast<float>()).norm(), 1e-5f);
+  }
+}
+
 TEST(Animation, BendsByTheDeformerThatIsAskedFor) {
   Asset asset = riggedStool();
   const AssetSkeleton skeleton = readSkeleton(asset);
@@ -79,7 +106,7 @@ TEST(Animation, ShowsASkeletonAloneAsItsBones) {
   Warnings warnings;
   Progress progress;
   options.width = options.height = 64;
-  const std::vector<double> moments = clipMoments(motion.clips[0], 3, true);
+  const std::vector<double> moments = clipMoments(motion.clips[0].duration(), 3, true);
   const std::vector<Image> images =
       renderClip(SceneMaker(asset), motion.clips[0], moments, options, progress, warnings);
   ASSERT_EQ(images.size(), 3u);
@@ -137,10 +164,10 @@ TEST(Animation, ATurnHoldsTheModelFromAllAround) {
 
 TEST(Animation, MomentsCoverTheClip) {
   const Clip clip = rising();
-  EXPECT_EQ(clipMoments(clip, 5, true), (std::vector<double>{0, 0.25, 0.5, 0.75, 1}));
-  EXPECT_EQ(clipMoments(clip, 4, false), (std::vector<double>{0, 0.25, 0.5, 0.75}));
-  EXPECT_EQ(clipMoments(clip, 1, true), std::vector<double>{0});
-  EXPECT_THROW(clipMoments(clip, 0, true), Error);
+  EXPECT_EQ(clipMoments(clip.duration(), 5, true), (std::vector<double>{0, 0.25, 0.5, 0.75, 1}));
+  EXPECT_EQ(clipMoments(clip.duration(), 4, false), (std::vector<double>{0, 0.25, 0.5, 0.75}));
+  EXPECT_EQ(clipMoments(clip.duration(), 1, true), std::vector<double>{0});
+  EXPECT_THROW(clipMoments(clip.duration(), 0, true), Error);
 }
 
 }  // namespace

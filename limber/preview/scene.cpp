@@ -105,9 +105,13 @@ SceneMaker::SceneMaker(const Asset& asset, const Deformer& deformer) : asset_(as
 }
 
 Scene SceneMaker::at(const Pose& pose) const {
+  return at(pose, readShapeWeights(asset_));
+}
+
+Scene SceneMaker::at(const Pose& pose, const ShapeWeights& shapes) const {
   if (!poser_) throw Error(ErrorCode::kUnsupported, "has no rig to pose", asset_.name, "rig it first: limber rig");
   Scene scene;
-  Geometry geometry = poser_->posed(pose).geometry;
+  Geometry geometry = poser_->posed(pose, shapes).geometry;
   addSkeleton(skeleton_.skeleton, pose, scene);
   scene.weights = poser_->weights();
   scene.boundPositions = boundPositions_;
@@ -118,19 +122,32 @@ Scene SceneMaker::at(const Pose& pose) const {
 Scene SceneMaker::still() const {
   if (poser_) return at(readNodePose(asset_, skeleton_));
   if (isSkeletonAlone(asset_)) return boneScene(skeleton_.skeleton, readNodePose(asset_, skeleton_));
+  return unrigged(readShapeWeights(asset_));
+}
+
+Scene SceneMaker::unrigged(const ShapeWeights& shapes) const {
   Scene scene;
-  addSurface(asset_, collectGeometry(asset_), scene);
+  Geometry geometry = collectGeometry(asset_);
+  moveByShapes(asset_, shapes, geometry);
+  addSurface(asset_, std::move(geometry), scene);
   return scene;
 }
 
+double SceneMaker::duration(const Clip& clip) const {
+  const std::optional<Index> animation = animationNamed(asset_.document, clip.name);
+  return std::max(clip.duration(), animation ? shapeDuration(asset_, *animation) : 0);
+}
+
 Scene SceneMaker::at(const Clip& clip, double seconds) const {
+  const ShapeWeights shapes = readShapeWeights(asset_, animationNamed(asset_.document, clip.name), seconds);
   if (!poser_ && !isSkeletonAlone(asset_)) {
+    if (clip.translations.empty() && clip.rotations.empty() && clip.scales.empty()) return unrigged(shapes);
     throw Error(ErrorCode::kUnsupported, "its clips move meshes without a skeleton, which limber does not draw",
                 asset_.name);
   }
   Pose pose = restPose(skeleton_.skeleton);
   sampleClip(clip, seconds, pose);
-  return poser_ ? at(pose) : boneScene(skeleton_.skeleton, pose);
+  return poser_ ? at(pose, shapes) : boneScene(skeleton_.skeleton, pose);
 }
 
 Scene makeScene(const Asset& asset) {

@@ -53,8 +53,8 @@ struct Scene {
 // Colours are the materials' base colours times vertex colours times base colour textures.
 Scene makeScene(const Asset& asset);
 
-// The same at a moment of a clip over the asset's animatedSkeleton. Throws Error kUnsupported where meshes move without
-// a skin.
+// The same at a moment of a clip over the asset's movingSkeleton, with blend shapes as the asset's animation of the
+// clip's name has them. Throws Error kUnsupported where meshes move without a skin.
 Scene sceneAt(const Asset& asset, const Clip& clip, double seconds);
 
 // Both for an asset of which several pictures are made: what its deformer prepares is prepared once. The asset must
@@ -65,10 +65,14 @@ class SceneMaker {
 
   Scene still() const;
   Scene at(const Clip& clip, double seconds) const;
+  double duration(const Clip& clip) const;  // seconds, with the blend shapes of its name
   // In a pose of animatedSkeleton(asset), which must be rigged.
   Scene at(const Pose& pose) const;
 
  private:
+  Scene at(const Pose& pose, const ShapeWeights& shapes) const;
+  Scene unrigged(const ShapeWeights& shapes) const;
+
   const Asset& asset_;
   AssetSkeleton skeleton_;             // of a rigged asset, or a skeleton alone
   std::unique_ptr<AssetPoser> poser_;  // of a rigged asset

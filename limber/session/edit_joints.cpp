@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "limber/asset/joint_edit.h"
+#include "limber/asset/moving_parents.h"
 #include "limber/asset/node_edit.h"
 #include "limber/ik/limits_json.h"
 #include "limber/matching/rest_form.h"
@@ -22,6 +23,7 @@ constexpr double kSameScale = 1e-6;
 // Its clips are the session's, which writes them when a file is made.
 Asset documentToEdit(const RiggedModel& model) {
   Asset asset = documentOf(model);
+  settleMovingParents(asset, model.binding);
   std::vector<bool> moves(asset.document.nodes.size(), false);
   for (const Index node : model.binding.jointNode) moves[node] = true;
   removeChannels(asset, [&](Index node, std::string_view path) { return moves[node] && path != "weights"; });

@@ -7,8 +7,10 @@
 #include <fmt/format.h>
 
 #include "limber/asset/clip_io.h"
+#include "limber/asset/moving_parents.h"
 #include "limber/asset/node_edit.h"
 #include "limber/asset/pose_io.h"
+#include "limber/asset/rest_pose.h"
 #include "limber/session/refuse.h"
 
 namespace limber {
@@ -90,6 +92,7 @@ std::shared_ptr<RiggedModel> readRiggedModel(Asset document) {
 std::shared_ptr<const RiggedModel> openRiggedModel(const Asset& source) {
   if (!hasRig(source)) throw Error(ErrorCode::kBadArgument, "the model has no rig", source.name);
   Asset document = source.clone();
+  joinBindPoses(document);
   std::shared_ptr<RiggedModel> model = readRig(document);
   readOwnClips(*model, document);
   model->asset = std::make_shared<const Asset>(std::move(document));
@@ -133,6 +136,7 @@ Asset assetWithClips(const RiggedModel& model, const Pose& pose, std::span<const
   const bool untouched = std::all_of(model.clips.begin(), model.clips.end(),
                                      [&](const std::shared_ptr<const Clip>& own) { return holds(clips, own); });
   if (!untouched) {
+    settleMovingParents(asset, model.binding);
     std::vector<bool> moves(asset.document.nodes.size(), false);
     for (const Index node : model.binding.jointNode) moves[node] = true;
     removeChannels(asset, [&](Index node, std::string_view path) { return moves[node] && path != "weights"; });

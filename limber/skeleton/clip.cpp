@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -94,7 +95,10 @@ auto hermite(const Track<Value>& track, std::size_t k, double span, double u) {
 template <typename Value>
 auto valueAt(const Track<Value>& track, double seconds) {
   const bool cubic = track.interpolation == Interpolation::kCubic;
-  const auto next = std::upper_bound(track.times.begin(), track.times.end(), seconds,
+  // Times of frames are double and keys single precision: just before a key of constant tracks is at that key.
+  constexpr double kTimeRounding = 4 * std::numeric_limits<float>::epsilon();
+  const double rounding = track.interpolation == Interpolation::kStep ? kTimeRounding * std::abs(seconds) : 0;
+  const auto next = std::upper_bound(track.times.begin(), track.times.end(), seconds + rounding,
                                      [](double time, float key) { return time < key; });
   const std::size_t after = static_cast<std::size_t>(next - track.times.begin());
   const std::size_t before = after == 0 ? 0 : after - 1;

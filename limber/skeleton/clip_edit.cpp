@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "limber/core/error.h"
+#include "limber/skeleton/held_clip.h"
 #include "limber/skeleton/motion.h"
 
 namespace limber {
@@ -50,6 +51,8 @@ void collapse(Track<Value>& track) {
 }
 
 std::vector<float> frameTimes(double duration, double rate, Index frames) {
+  constexpr double kRounding = 1e-3;  // of a frame: key times are rounded, and the end is a frame, too
+  if (std::abs((frames - 1) / rate - duration) * rate < kRounding) duration = (frames - 1) / rate;
   std::vector<float> times;
   for (Index k = 0; k < frames; ++k) times.push_back(static_cast<float>(std::min(k / rate, duration)));
   const auto last = static_cast<float>(duration);
@@ -181,6 +184,7 @@ Clip clipOfPoses(const Skeleton& skeleton, const std::vector<Pose>& poses, const
     add(clip.rotations, rotation, stored(rest.rotation));
     add(clip.scales, scale, stored(rest.scale));
   }
+  keepDuration(clip, times);
   return clip;
 }
 

@@ -79,6 +79,21 @@ TEST(ClipEdit, ResamplingKeepsTheFrames) {
   }
 }
 
+// Frame times of 0.033333 s: the last key lies a little before the frame that it is.
+TEST(ClipEdit, ResamplingEndsAtAFrame) {
+  Clip clip;
+  Track<Vec3f> track{0, Interpolation::kLinear, {}, {}};
+  for (int k = 0; k <= 30; ++k) {
+    track.times.push_back(static_cast<float>(k * 0.033333));
+    track.values.emplace_back(static_cast<float>(k), 0, 0);
+  }
+  clip.translations.push_back(track);
+  const Track<Vec3f> sampled = resampleClip(clip, 30).translations.at(0);
+  ASSERT_EQ(sampled.times.size(), 31u);
+  EXPECT_EQ(sampled.times.back(), 1);
+  EXPECT_EQ(sampled.values.back().x(), 30);
+}
+
 TEST(ClipEdit, ResamplingALinearClipAtItsOwnRateChangesNothing) {
   const Skeleton skeleton = chain(3);
   const Clip clip = randomClip(skeleton, 2, Interpolation::kLinear), sampled = resampleClip(clip, 10);

@@ -1,5 +1,6 @@
 #include "limber/skeleton/clip.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -51,6 +52,23 @@ TEST(Clip, StepsHoldTheKeyBefore) {
   EXPECT_EQ(tipAt(clip, 0.5), Vec3(0, 0, 0));
   EXPECT_EQ(tipAt(clip, 2.999), Vec3(0, 0, 0));
   EXPECT_EQ(tipAt(clip, 3), Vec3(4, 0, 0));
+}
+
+// Key times are single precision: k / 60 may be a little less as a double.
+TEST(Clip, StepsShowEachKeyAtItsFrame) {
+  for (const double rate : {24.0, 30.0, 60.0, 120.0}) {
+    Track<Vec3f> track{1, Interpolation::kStep, {}, {}};
+    constexpr int kFrames = 3000;
+    for (int k = 0; k < kFrames; ++k) {
+      track.times.push_back(static_cast<float>(k / rate));
+      track.values.emplace_back(static_cast<float>(k), 0, 0);
+    }
+    for (int k = 0; k < kFrames; ++k) {
+      EXPECT_EQ(sampleTrack(track, k / rate).x(), k) << rate;
+      EXPECT_EQ(sampleTrack(track, k * (1 / rate)).x(), k) << rate;
+      EXPECT_EQ(sampleTrack(track, (k - 0.01) / rate).x(), std::max(0, k - 1)) << rate;
+    }
+  }
 }
 
 TEST(Clip, CubicsReproduceACubicPolynomial) {

@@ -12,6 +12,7 @@
 #include "limber/asset/geometry.h"
 #include "limber/asset/motion_io.h"
 #include "limber/asset/pose_io.h"
+#include "limber/asset/rest_pose.h"
 #include "limber/asset/shape_name.h"
 #include "limber/asset/shape_tracks.h"
 #include "limber/asset/unique_names.h"
@@ -352,7 +353,8 @@ class ModelReader {
 }  // namespace
 
 UsdModel readUsdModel(const Asset& asset, const std::vector<UsdSurface>& surfaces, const UsdOptions& options) {
-  return ModelReader(asset, surfaces).read(options);
+  const std::optional<Asset> joined = withJoinedBinds(asset);
+  return ModelReader(joined ? *joined : asset, surfaces).read(options);
 }
 
 UsdModel readStillUsdModel(const Asset& asset, const std::vector<UsdSurface>& surfaces, const UsdStillSurface& still) {

@@ -1,0 +1,103 @@
+#include "limber/asset/moving_parents.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "limber/asset/accessor.h"
+#include "limber/asset/clip_io.h"
+#include "limber/asset/read.h"
+#include "limber/asset/replace_clips.h"
+#include "limber/asset/testing/gltf_builder.h"
+#include "limber/asset/write.h"
+
+namespace limber {
+namespace {
+
+// The skeleton, a skinned mesh and a camera below an armature that goes 3 m along X in a second and lies turned.
+Asset movingArmature() {
+  testing::GltfBuilder model = testing::everythingModel();
+  const Index times = model.accessor<float>({0, 1}, 5126, "SCALAR", 2);
+  const Index places = model.accessor<float>({0, 1, 0, 3, 1, 0}, 5126, "VEC3", 2);
+  model.push("nodes", {{"name", "prop"}, {"camera", 0}, {"translation", {0.0, 0.0, 2.0}}});
+  model.push("nodes", {{"name", "armature"},
+                       {"children", {0, 2, 4}},
+                       {"rotation", {0.0, 0.70710678, 0.0, 0.70710678}},
+                       {"scale", {0.5, 0.5, 0.5}}});
+  model.json["scenes"][0]["nodes"] = {5};
+  Json& animation = model.json["animations"][0];
+  animation["samplers"].push_back({{"input", times}, {"output", places}});
+  animation["channels"].push_back({{"sampler", 1}, {"target", {{"node", 5}, {"path", "translation"}}}});
+  return readAsset(model.glb(), "armature.glb");
+}
+
+// Where one node is at a moment of the first animation, as a skeleton of that node alone reads it.
+Vec3 placeAt(const Asset& asset, Index node, double seconds) {
+  AssetSkeleton alone;
+  alone.skeleton.joints.emplace_back().name = "alone";
+  alone.jointNode = {node};
+  Warnings ignored;
+  Pose pose = restPose(alone.skeleton);
+  sampleClip(readClips(asset, alone, ignored).at(0), seconds, pose);
+  return pose.locals[0].translation;
+}
+
+std::vector<std::string> channelsOf(const Asset& asset) {
+  std::vector<std::string> targets;
+  for (const gltf::AnimationChannel& channel : asset.document.animations.at(0).channels) {
+    targets.push_back(asset.document.nodes[*channel.target.node].name + " " + channel.target.path);
+  }
+  return targets;
+}
+
+TEST(MovingParents, StandStillAndWhatHangsOnThemMoves) {
+  Asset asset = movingArmature();
+  const Asset before = asset.clone();
+  settleMovingParents(asset, readSkeleton(asset));
+  checkAsset(asset);
+  EXPECT_THAT(channelsOf(asset), ::testing::Not(::testing::Contains(::testing::StartsWith("armature"))));
+  EXPECT_THAT(channelsOf(asset), ::testing::Not(::testing::Contains(::testing::StartsWith("body"))));
+  for (const Index node : {0u, 1u, 3u, 4u}) {
+    for (const double seconds : {0.0, 0.4, 1.0}) {
+      EXPECT_LT((placeAt(asset, node, seconds) - placeAt(before, node, seconds)).norm(), 1e-5) << node;
+    }
+  }
+  EXPECT_NEAR((placeAt(asset, 4, 1) - placeAt(asset, 4, 0)).x(), 3, 1e-5);
+  ASSERT_EQ(asset.warnings.items().size(), 1u);
+  EXPECT_EQ(asset.warnings.items()[0].kind, "moving-parents");
+
+  const Bytes settled = writeGlb(asset);
+  settleMovingParents(asset, readSkeleton(asset));
+  EXPECT_EQ(writeGlb(asset), settled) << "nothing is left to do";
+}
+
+TEST(MovingParents, ReplacedClipsMoveOnce) {
+  Asset asset = movingArmature();
+  const Asset before = asset.clone();
+  const AssetSkeleton rig = readSkeleton(asset);
+  Warnings warnings;
+  replaceClips(asset, rig, readClips(asset, rig, warnings));
+  for (const Index node : {0u, 1u, 4u}) {
+    for (const double seconds : {0.0, 0.4, 1.0}) {
+      EXPECT_LT((placeAt(asset, node, seconds) - placeAt(before, node, seconds)).norm(), 1e-5) << node;
+    }
+  }
+}
+
+TEST(MovingParents, OtherAnimationsStayAsTheyAre) {
+  Asset asset = movingArmature();
+  const Bytes before = writeGlb(asset);
+  settleMovingParents(asset, readSkeleton(asset), {});
+  EXPECT_EQ(writeGlb(asset), before);
+}
+
+TEST(MovingParents, AMeshOnSuchANodeIsTold) {
+  Asset asset = movingArmature();
+  asset.document.nodes[5].mesh = 0;
+  settleMovingParents(asset, readSkeleton(asset));
+  std::vector<std::string> kinds;
+  for (const Warning& warning : asset.warnings.items()) kinds.push_back(warning.kind);
+  EXPECT_THAT(kinds, ::testing::UnorderedElementsAre("still-parents", "moving-parents"));
+}
+
+}  // namespace
+}  // namespace limber
