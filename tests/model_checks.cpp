@@ -213,7 +213,7 @@ void expectJointCount(const AssetSkeleton& rig, Index handles) {
 }
 
 bool expectSymmetricWhereMeshIs(const Geometry& geometry, const Skeleton& skeleton) {
-  const PreparedMesh prepared = prepareMesh(geometry.positions, geometry.triangles);
+  const PreparedMesh prepared = prepareGeometry(geometry, geometry.triangles);
   if (!isMirrorSymmetric(prepared.mesh)) return false;
   std::vector<Vec3> places;
   for (const Affine& global : restGlobals(skeleton)) places.push_back(prepared.frame.toWorking(global.translation()));

@@ -62,7 +62,7 @@ void rigAtEveryCount(const Asset& asset, const std::string& name, const fs::path
                      Symmetry symmetry = Symmetry::kWhereMeshIs) {
   const Geometry geometry = collectGeometry(asset);
   const bool hadRig = hasRig(asset);
-  const Index weldedVertices = prepareMesh(geometry.positions, geometry.triangles).mesh.vertexCount();
+  const Index weldedVertices = prepareGeometry(geometry, geometry.triangles).mesh.vertexCount();
   AutoRigOptions options;
   options.existingRig = hadRig ? ExistingRig::kReplace : ExistingRig::kRefuse;
   for (const Index handles : handleCounts()) {

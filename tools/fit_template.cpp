@@ -64,7 +64,7 @@ Character readCharacter(const std::filesystem::path& file) {
   const Skeleton skeleton = readSkinnedModel(asset).skeleton;
   removeRig(asset);
   const Geometry geometry = collectGeometry(asset);
-  const PreparedMesh prepared = prepareMesh(geometry.positions, geometry.triangles);
+  const PreparedMesh prepared = prepareGeometry(geometry, geometry.triangles);
   Character character;
   const std::string stem = file.stem().string();
   character.maker = stem.substr(0, stem.find('_'));

@@ -131,7 +131,7 @@ AutoRigReport rigByProgram(Asset& asset, const Adapter& adapter, const AutoRigOp
     if (hasRig(rigged)) removeRig(rigged);
     const Geometry geometry = collectGeometry(rigged);
     progress.stage("weld");
-    const PreparedMesh prepared = prepareMesh(geometry.positions, geometry.triangles);
+    const PreparedMesh prepared = prepareGeometry(geometry, geometry.triangles);
     AutoRigReport report = reportOf(geometry, prepared, options);
 
     progress.stage("rig");
@@ -175,7 +175,7 @@ Warnings weightsByProgram(Asset& asset, const Adapter& adapter, const WeightOpti
     progress.stage("weights");
     const AssetSkeleton own = readSkeleton(asset);
     const Geometry geometry = collectGeometry(asset);
-    const PreparedMesh prepared = prepareMesh(geometry.positions, geometry.triangles);
+    const PreparedMesh prepared = prepareGeometry(geometry, geometry.triangles);
     const HandedModel handed = handedModel(prepared.mesh, adapter);
     const Skeleton working = movedSkeleton(own.skeleton, worldOf(prepared.frame).inverse());
     Asset given = meshAsset(handed.mesh);

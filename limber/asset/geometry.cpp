@@ -12,6 +12,7 @@
 #include "limber/asset/bind_pose.h"
 #include "limber/asset/document_errors.h"
 #include "limber/asset/extensions.h"
+#include "limber/asset/grid_step.h"
 #include "limber/asset/primitive_triangles.h"
 #include "limber/asset/scene_graph.h"
 #include "limber/core/known_error.h"
@@ -172,6 +173,8 @@ class Collector {
       geometry_.triangles.push_back({first + t[0], first + t[1], first + t[2]});
     }
     geometry_.instances.push_back({instance.node, instance.mesh, index, instance.copy, first, count, instance.toWorld});
+    const Vec3 halfStep = Vec3::Constant(0.5 * gridStep(stored, accessorInfo(asset_, *accessor)));
+    geometry_.instances.back().quantisation = (instance.toWorld.linear() * halfStep.asDiagonal()).norm();
   }
 
   const Asset& asset_;
@@ -188,6 +191,15 @@ Geometry collectGeometry(const Asset& asset) {
   } catch (const Error& error) {
     throwWithin(error, asset.name);
   }
+}
+
+PreparedMesh prepareGeometry(const Geometry& geometry, std::span<const Triangle> triangles) {
+  std::vector<StoredVertices> stored;
+  for (const PrimitiveInstance& instance : geometry.instances) {
+    stored.push_back(
+        {instance.firstVertex, instance.vertexCount, instance.toWorld.translation(), instance.quantisation});
+  }
+  return prepareMesh(geometry.positions, triangles, stored);
 }
 
 }  // namespace limber

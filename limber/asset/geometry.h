@@ -5,6 +5,7 @@
 
 #include "limber/asset/asset.h"
 #include "limber/core/types.h"
+#include "limber/mesh/prepare.h"
 
 namespace limber {
 
@@ -14,6 +15,7 @@ struct PrimitiveInstance {
   Index copy = 0;                          // which of the node's instances, with EXT_mesh_gpu_instancing
   Index firstVertex = 0, vertexCount = 0;  // range in Geometry::positions
   Affine toWorld = Affine::Identity();     // vertex as stored (after dequantising) -> world
+  double quantisation = 0;                 // of its vertices in world space (StoredVertices)
 };
 
 struct Geometry {
@@ -34,5 +36,9 @@ struct Geometry {
 // vertices, or above a million instances more than the file has nodes; kBadData where a vertex is not finite or nothing
 // has a triangle; where() begins with the asset's name. Cost: O(#S + #F).
 Geometry collectGeometry(const Asset& asset);
+
+// prepareMesh of the geometry: where its instances meet, vertices are welded as exactly as their numbers are known.
+// triangles  geometry.triangles, or some of them
+PreparedMesh prepareGeometry(const Geometry& geometry, std::span<const Triangle> triangles);
 
 }  // namespace limber

@@ -53,7 +53,7 @@ void countEdges(const TriMesh& mesh, SurfaceInfo& info) {
 
 std::optional<SurfaceInfo> inspectSurface(const Geometry& geometry) {
   try {
-    const PreparedMesh prepared = prepareMesh(geometry.positions, geometry.triangles);
+    const PreparedMesh prepared = prepareGeometry(geometry, geometry.triangles);
     SurfaceInfo info;
     info.weldedVertices = prepared.mesh.vertexCount();
     info.triangles = prepared.mesh.triangleCount();

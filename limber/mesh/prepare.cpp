@@ -1,47 +1,14 @@
 #include "limber/mesh/prepare.h"
 
-#include <bit>
 #include <cmath>
 
 #include <fmt/format.h>
 
-#include "limber/core/bits.h"
 #include "limber/mesh/model_box.h"
 
 namespace limber {
 
 namespace {
-
-// Open addressing over vertex indices: each slot holds a welded vertex, keyed by its position's bits.
-class PositionTable {
- public:
-  explicit PositionTable(std::size_t count) : slots_(std::bit_ceil(2 * count + 2), kNoIndex) {}
-
-  // The welded vertex at `position`, appending it to `welded` if it is new.
-  Index findOrAdd(const Vec3f& position, std::vector<Vec3f>& welded) {
-    const std::size_t mask = slots_.size() - 1;
-    for (std::size_t slot = hash(position) & mask;; slot = (slot + 1) & mask) {
-      if (slots_[slot] == kNoIndex) {
-        slots_[slot] = static_cast<Index>(welded.size());
-        welded.push_back(position);
-        return slots_[slot];
-      }
-      if (welded[slots_[slot]] == position) return slots_[slot];
-    }
-  }
-
- private:
-  static std::uint64_t hash(const Vec3f& position) {
-    std::uint64_t h = 0;
-    for (int i = 0; i < 3; ++i) {
-      h = (h ^ bitCast<std::uint32_t>(position[i] + 0.0f)) * 0x9e3779b97f4a7c15u;  // + 0 turns -0 into 0
-      h ^= h >> 32;
-    }
-    return h;
-  }
-
-  std::vector<Index> slots_;
-};
 
 void checkInput(std::span<const Vec3f> positions, std::span<const Triangle> triangles) {
   for (std::size_t v = 0; v < positions.size(); ++v) {
@@ -91,15 +58,19 @@ void moveToFrame(const WorkingFrame& frame, std::vector<Vec3f>& positions) {
 
 }  // namespace
 
-PreparedMesh prepareMesh(std::span<const Vec3f> positions, std::span<const Triangle> triangles) {
+PreparedMesh prepareMesh(std::span<const Vec3f> positions, std::span<const Triangle> triangles,
+                         std::span<const StoredVertices> stored) {
   checkInput(positions, triangles);
   PreparedMesh result;
   TriMesh& mesh = result.mesh;
 
-  PositionTable table(positions.size());
+  const std::vector<Index> same = samePoints(positions, triangles, stored);
   result.weldedVertex.reserve(positions.size());
   mesh.positions.reserve(positions.size());
-  for (const Vec3f& position : positions) result.weldedVertex.push_back(table.findOrAdd(position, mesh.positions));
+  for (Index v = 0; v < positions.size(); ++v) {
+    result.weldedVertex.push_back(same[v] == v ? mesh.vertexCount() : result.weldedVertex[same[v]]);
+    if (same[v] == v) mesh.positions.push_back(positions[v]);
+  }
 
   mesh.triangles.reserve(triangles.size());
   for (const Triangle& source : triangles) {

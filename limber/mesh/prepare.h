@@ -6,6 +6,7 @@
 
 #include "limber/core/error.h"
 #include "limber/mesh/tri_mesh.h"
+#include "limber/mesh/weld.h"
 
 namespace limber {
 
@@ -25,15 +26,17 @@ struct PreparedMesh {
   Warnings warnings;  // kinds: degenerate-triangles, far-vertices
 };
 
-// Welds vertices at equal positions (bit for bit, -0 equal to 0), leaves out triangles that have a repeated vertex
-// after welding (zero-area triangles with three different vertices stay), centres and scales. Far pieces (modelBox) and
-// loose vertices lie outside the unit box, at most 1e4 from its middle; far-vertices counts what
-// lies outside of modelBox: of loose vertices those more than kFarAway away.
+// Welds vertices that are one point (samePoints), leaves out triangles that have a repeated vertex after welding
+// (zero-area triangles with three different vertices stay), centres and scales. A welded vertex has the position of the
+// lowest source vertex. Far pieces (modelBox) and loose vertices lie outside the unit box, at most 1e4 from its middle;
+// far-vertices counts what lies outside of modelBox: of loose vertices those more than kFarAway away.
 //
 // positions  #S source vertices in world space, finite
 // triangles  indices into positions, in range
+// stored     how exactly the positions are known, as for samePoints
 // Throws Error kBadData where no triangle is left ("has no triangle"), and kBadArgument for an index out of range.
-// Cost: O(#S + #F), one hash table.
-PreparedMesh prepareMesh(std::span<const Vec3f> positions, std::span<const Triangle> triangles);
+// Cost: that of samePoints.
+PreparedMesh prepareMesh(std::span<const Vec3f> positions, std::span<const Triangle> triangles,
+                         std::span<const StoredVertices> stored = {});
 
 }  // namespace limber

@@ -45,13 +45,14 @@ TEST(PrepareMesh, TheFrameIsItsOwnInverse) {
   EXPECT_TRUE(frame.toWorking(frame.toSource(Vec3(4, 5, 6))).isApprox(Vec3(4, 5, 6)));
 }
 
-TEST(PrepareMesh, WeldsEqualPositionsOnly) {
+TEST(PrepareMesh, WeldsWhatRoundingExplains) {
   const float next = std::nextafter(1.0f, 2.0f);
-  const std::vector<Vec3f> positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-0.0f, 0, -0.0f}, {next, 0, 0}, {0, 1, 0}};
-  const PreparedMesh prepared = prepareMesh(positions, std::vector<Triangle>{{0, 1, 2}, {3, 4, 5}});
-  EXPECT_EQ(prepared.weldedVertex, (std::vector<Index>{0, 1, 2, 0, 3, 2}));
-  EXPECT_EQ(prepared.mesh.vertexCount(), 4u);
-  EXPECT_EQ(prepared.mesh.triangles[1], (Triangle{0, 3, 2}));
+  const std::vector<Vec3f> positions = {{0, 0, 0},         {1, 0, 0}, {0, 1, 0},      {-0.0f, 0, -0.0f},
+                                        {next, -1e-8f, 0}, {0, 1, 0}, {1.0001f, 0, 0}};
+  const PreparedMesh prepared = prepareMesh(positions, std::vector<Triangle>{{0, 1, 2}, {3, 6, 5}, {0, 4, 2}});
+  EXPECT_EQ(prepared.weldedVertex, (std::vector<Index>{0, 1, 2, 0, 1, 2, 3}));
+  EXPECT_EQ(prepared.mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 3, 2}, {0, 1, 2}}));
+  EXPECT_TRUE(prepared.frame.toSource(prepared.mesh.position(1)).isApprox(Vec3(1, 0, 0), 1e-6));
 }
 
 TEST(PrepareMesh, WeldsAsABruteForceDoes) {

@@ -44,7 +44,7 @@ struct KeptSurface {
 
 KeptSurface keptSurface(const Geometry& geometry) {
   KeptSurface surface;
-  surface.prepared = prepareMesh(geometry.positions, geometry.triangles);
+  surface.prepared = prepareGeometry(geometry, geometry.triangles);
   surface.kept = keptTriangles(geometry, surface.prepared);
   surface.graph = faceGraph(surface.prepared.mesh);
   return surface;

@@ -96,7 +96,7 @@ class Splitter {
   }
 
   void findCaps(Progress& progress) {
-    prepared_ = prepareMesh(geometry_.positions, geometry_.triangles);
+    prepared_ = prepareGeometry(geometry_, geometry_.triangles);
     std::vector<Index> partOf;
     for (std::size_t t = 0; t < geometry_.triangles.size(); ++t) {
       const Triangle& v = geometry_.triangles[t];

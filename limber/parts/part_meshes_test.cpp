@@ -83,7 +83,7 @@ std::vector<std::array<Corner, 3>> cornersOf(const Asset& asset, const std::set<
 // Edges that have other than two triangles, of what these nodes show.
 std::size_t oddEdges(const Asset& asset, const std::vector<Index>& nodes) {
   const Geometry geometry = collectGeometry(asset);
-  const PreparedMesh prepared = prepareMesh(geometry.positions, geometry.triangles);
+  const PreparedMesh prepared = prepareGeometry(geometry, geometry.triangles);
   std::map<std::pair<Index, Index>, int> edges;
   for (const Triangle& t : geometry.triangles) {
     const auto instance = std::find_if(geometry.instances.rbegin(), geometry.instances.rend(),

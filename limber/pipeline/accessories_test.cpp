@@ -77,7 +77,7 @@ TEST(Accessories, FollowTheJointOfTheBodyThatIsNearest) {
   const Accessories accessories = findAccessories(asset, geometry);
   EXPECT_EQ(bodyTriangles(geometry, accessories).size(), 12u);
 
-  const PreparedMesh prepared = prepareMesh(geometry.positions, geometry.triangles);
+  const PreparedMesh prepared = prepareGeometry(geometry, geometry.triangles);
   SkinWeights weights;
   weights.slots = 2;
   for (Index v = 0; v < prepared.mesh.vertexCount(); ++v) {

@@ -183,7 +183,7 @@ Rigged makeRig(const Asset& asset, const Geometry& geometry, const PreparedMesh&
     const RiggerMethod& rigger = findRigger(options.rigger);
     if (rigger.looksForLimbs) accessories = findAccessories(asset, geometry);
     std::optional<PreparedMesh> body;
-    if (!accessories.empty()) body = prepareMesh(geometry.positions, bodyTriangles(geometry, accessories));
+    if (!accessories.empty()) body = prepareGeometry(geometry, bodyTriangles(geometry, accessories));
     WorkingFrame frame = body ? body->frame : prepared.frame;
     RigOptions rigOptions = optionsIn(frame, options.rig);
     if (body && rigOptions.memory) {
@@ -267,7 +267,7 @@ AutoRigReport runStages(Asset& asset, const AutoRigOptions& options, Progress& p
   moveByShapes(asset, readShapeWeights(asset), geometry);
 
   progress.stage("weld");
-  const PreparedMesh prepared = prepareMesh(geometry.positions, geometry.triangles);
+  const PreparedMesh prepared = prepareGeometry(geometry, geometry.triangles);
   const Pieces pieces(prepared.mesh);
   report.sourceVertices = static_cast<Index>(geometry.positions.size());
   report.weldedVertices = prepared.mesh.vertexCount();

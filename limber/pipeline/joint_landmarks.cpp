@@ -86,7 +86,7 @@ std::vector<JointPair> commonJoints(const Skeleton& source, const Skeleton& targ
 std::optional<FittedSkeleton> fittedSkeleton(const Asset& asset, const Geometry& geometry, Progress& progress) {
   const Accessories accessories = findAccessories(asset, geometry);
   const PreparedMesh prepared =
-      prepareMesh(geometry.positions, accessories.empty() ? geometry.triangles : bodyTriangles(geometry, accessories));
+      prepareGeometry(geometry, accessories.empty() ? geometry.triangles : bodyTriangles(geometry, accessories));
   AutoRig rig = rigWithTemplate(prepared.mesh, {}, progress);
   if (rig.isAbstained || rig.matches.empty()) return std::nullopt;
   for (Joint& joint : rig.skeleton.joints) {

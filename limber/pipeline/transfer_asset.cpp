@@ -73,8 +73,8 @@ std::vector<std::string> namesOnSurface(const Accessories& accessories) {
 }
 
 PreparedMesh prepareBody(const Geometry& geometry, const Accessories& accessories) {
-  if (accessories.empty()) return prepareMesh(geometry.positions, geometry.triangles);
-  return prepareMesh(geometry.positions, bodyTriangles(geometry, accessories));
+  if (accessories.empty()) return prepareGeometry(geometry, geometry.triangles);
+  return prepareGeometry(geometry, bodyTriangles(geometry, accessories));
 }
 
 void checkHasRig(const Asset& source) {
@@ -179,7 +179,7 @@ struct TargetModel {
 TargetModel readTarget(Geometry geometry, Accessories accessories) {
   TargetModel result;
   result.geometry = std::move(geometry);
-  result.prepared = prepareMesh(result.geometry.positions, result.geometry.triangles);
+  result.prepared = prepareGeometry(result.geometry, result.geometry.triangles);
   result.accessories = std::move(accessories);
   result.body = result.prepared.mesh;
   if (result.accessories.empty()) return result;

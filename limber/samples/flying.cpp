@@ -137,7 +137,7 @@ Clip flight(const Skeleton& skeleton) {
 }
 
 SkinWeights weightsFor(const Geometry& geometry, const Skeleton& skeleton) {
-  const PreparedMesh prepared = prepareMesh(geometry.positions, geometry.triangles);
+  const PreparedMesh prepared = prepareGeometry(geometry, geometry.triangles);
   std::vector<Bone> bones = bonesOf(skeleton);
   for (Bone& bone : bones) {
     bone.a = prepared.frame.toWorking(bone.a);

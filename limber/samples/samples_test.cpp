@@ -62,7 +62,7 @@ TEST_P(Samples, IsAClosedSymmetricModelOnItsFeet) {
   const Asset asset = makeSample(GetParam());
   checkAsset(asset);
   const Geometry geometry = collectGeometry(asset);
-  const PreparedMesh prepared = prepareMesh(geometry.positions, geometry.triangles);
+  const PreparedMesh prepared = prepareGeometry(geometry, geometry.triangles);
   EXPECT_TRUE(prepared.warnings.empty());
   EXPECT_GT(prepared.mesh.vertexCount(), 4000u);
   EXPECT_LT(prepared.mesh.vertexCount(), 12000u);

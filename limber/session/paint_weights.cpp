@@ -80,7 +80,7 @@ double painted(PaintMode mode, double weight, double strength, double amount) {
 
 PaintSurface::PaintSurface(std::shared_ptr<const Geometry> geometry)
     : geometry_(std::move(geometry)),
-      weldedVertex_(prepareMesh(geometry_->positions, geometry_->triangles).weldedVertex),
+      weldedVertex_(prepareGeometry(*geometry_, geometry_->triangles).weldedVertex),
       distance_(weldedMesh(*geometry_, weldedVertex_)) {
   firstSource_.assign(std::size_t{distance_.mesh().vertexCount()} + 1, 0);
   for (const Index w : weldedVertex_) ++firstSource_[w + 1];

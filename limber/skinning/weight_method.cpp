@@ -7,20 +7,30 @@
 #include "limber/skinning/bone_heat.h"
 #include "limber/skinning/bounded_biharmonic.h"
 #include "limber/skinning/geodesic_voxel.h"
+#include "limber/skinning/specks.h"
 
 namespace limber {
 
 namespace {
 
+// The method, and what holds for all of them.
+template <WeightFunction method>
+WeightResult computed(const TriMesh& mesh, std::span<const Bone> bones, const WeightOptions& options,
+                      Progress& progress) {
+  WeightResult result = method(mesh, bones, options, progress);
+  if (options.pieces != PieceMode::kSoft) holdSpecks(mesh, result.weights);
+  return result;
+}
+
 constexpr WeightMethod kMethods[] = {
     {"bone-heat", "heat that flows from each bone over the surface",
-     "Baran, Popović: Automatic Rigging and Animation of 3D Characters, 2007", &boneHeatWeights},
+     "Baran, Popović: Automatic Rigging and Animation of 3D Characters, 2007", &computed<&boneHeatWeights>},
     {"geodesic-voxel", "the ways to bones through the inside, on a grid",
-     "Dionne, de Lasa: Geodesic Voxel Binding, 2013", &geodesicVoxelWeights},
+     "Dionne, de Lasa: Geodesic Voxel Binding, 2013", &computed<&geodesicVoxelWeights>},
     {"bounded-biharmonic", "the smoothest weights through the inside that stay between 0 and 1",
-     "Jacobson, Baran, Popović, Sorkine: Bounded Biharmonic Weights, 2011", &boundedBiharmonicWeights},
-    {"envelopes", "bones hold what is near them, whatever lies between", "", &envelopeWeights},
-    {"nearest-bone", "each vertex follows the nearest bone alone", "", &nearestBoneWeights},
+     "Jacobson, Baran, Popović, Sorkine: Bounded Biharmonic Weights, 2011", &computed<&boundedBiharmonicWeights>},
+    {"envelopes", "bones hold what is near them, whatever lies between", "", &computed<&envelopeWeights>},
+    {"nearest-bone", "each vertex follows the nearest bone alone", "", &computed<&nearestBoneWeights>},
 };
 
 constexpr NamedPieceMode kPieceModes[] = {
