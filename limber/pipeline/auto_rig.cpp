@@ -13,10 +13,11 @@
 #include "limber/asset/rig_io.h"
 #include "limber/core/known_error.h"
 #include "limber/mesh/components.h"
-#include "limber/mesh/prepare.h"
 #include "limber/pipeline/accessories.h"
 #include "limber/pipeline/hanging_chains.h"
+#include "limber/pipeline/left_out_weights.h"
 #include "limber/pipeline/stand_upright.h"
+#include "limber/surface/figure_surface.h"
 
 namespace limber {
 
@@ -167,8 +168,9 @@ struct Rigged {
   AssetSkeleton kept;
 };
 
-Rigged makeRig(const Asset& asset, const Geometry& geometry, const PreparedMesh& prepared, const Pieces& pieces,
+Rigged makeRig(const Asset& asset, const Geometry& geometry, const FigureSurface& figure, const Pieces& pieces,
                const AutoRigOptions& options, AutoRigReport& report, Progress& progress) {
+  const PreparedMesh& prepared = figure.prepared;
   Rigged result;
   std::vector<Bone> bones;
   Accessories accessories;
@@ -181,7 +183,7 @@ Rigged makeRig(const Asset& asset, const Geometry& geometry, const PreparedMesh&
     const RiggerMethod& rigger = findRigger(options.rigger);
     if (rigger.looksForLimbs) accessories = findAccessories(asset, geometry);
     std::optional<PreparedMesh> body;
-    if (!accessories.empty()) body = prepareMesh(geometry.positions, bodyTriangles(geometry, accessories));
+    if (!accessories.empty()) body = figureSurface(geometry.positions, bodyTriangles(geometry, accessories)).prepared;
     WorkingFrame frame = body ? body->frame : prepared.frame;
     RigOptions rigOptions = optionsIn(frame, options.rig);
     if (body && rigOptions.memory) {
@@ -217,13 +219,14 @@ Rigged makeRig(const Asset& asset, const Geometry& geometry, const PreparedMesh&
                           ? heldByOneJoint(prepared.mesh)
                           : findWeightMethod(options.skinning).compute(prepared.mesh, bones, options.weights, progress);
   report.warnings.append(skin.warnings);
+  bindLeftOut(figure, skin.weights);
   const std::vector<HungAccessory> hung = accessories.empty()
                                               ? std::vector<HungAccessory>()
                                               : hangAccessories(geometry, prepared, accessories, skin.weights);
-  std::set<Index> ofAccessories;
-  for (const HungAccessory& accessory : hung)
-    ofAccessories.insert(accessory.vertices.begin(), accessory.vertices.end());
-  std::erase_if(skin.bridged, [&](Index v) { return ofAccessories.count(v) > 0; });
+  std::set<Index> ofOthers(figure.innerShell.begin(), figure.innerShell.end());
+  ofOthers.insert(figure.surroundings.begin(), figure.surroundings.end());
+  for (const HungAccessory& accessory : hung) ofOthers.insert(accessory.vertices.begin(), accessory.vertices.end());
+  std::erase_if(skin.bridged, [&](Index v) { return ofOthers.count(v) > 0; });
   reportBridged(asset, geometry, prepared, pieces, skin.bridged, report);
   if (options.chains && result.made && !report.matches.empty() && !report.isAbstained) {
     result.chains = chainsOfTails(*result.made);
@@ -263,7 +266,8 @@ AutoRigReport runStages(Asset& asset, const AutoRigOptions& options, Progress& p
   const Geometry geometry = collectGeometry(asset);
 
   progress.stage("weld");
-  const PreparedMesh prepared = prepareMesh(geometry.positions, geometry.triangles);
+  const FigureSurface figure = figureSurface(geometry.positions, geometry.triangles);
+  const PreparedMesh& prepared = figure.prepared;
   const Pieces pieces(prepared.mesh);
   report.sourceVertices = static_cast<Index>(geometry.positions.size());
   report.weldedVertices = prepared.mesh.vertexCount();
@@ -271,7 +275,7 @@ AutoRigReport runStages(Asset& asset, const AutoRigOptions& options, Progress& p
   report.pieces = pieces.solid;
   report.warnings.append(prepared.warnings);
 
-  const Rigged rig = makeRig(asset, geometry, prepared, pieces, options, report, progress);
+  const Rigged rig = makeRig(asset, geometry, figure, pieces, options, report, progress);
 
   progress.stage("write rig");
   if (rig.made) {
