@@ -193,13 +193,17 @@ Geometry collectGeometry(const Asset& asset) {
   }
 }
 
-PreparedMesh prepareGeometry(const Geometry& geometry, std::span<const Triangle> triangles) {
+std::vector<StoredVertices> storedVertices(const Geometry& geometry) {
   std::vector<StoredVertices> stored;
   for (const PrimitiveInstance& instance : geometry.instances) {
     stored.push_back(
         {instance.firstVertex, instance.vertexCount, instance.toWorld.translation(), instance.quantisation});
   }
-  return prepareMesh(geometry.positions, triangles, stored);
+  return stored;
+}
+
+PreparedMesh prepareGeometry(const Geometry& geometry, std::span<const Triangle> triangles) {
+  return prepareMesh(geometry.positions, triangles, storedVertices(geometry));
 }
 
 }  // namespace limber

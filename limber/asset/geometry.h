@@ -37,6 +37,9 @@ struct Geometry {
 // has a triangle; where() begins with the asset's name. Cost: O(#S + #F).
 Geometry collectGeometry(const Asset& asset);
 
+// How exactly the positions of its instances are known, for prepareMesh.
+std::vector<StoredVertices> storedVertices(const Geometry& geometry);
+
 // prepareMesh of the geometry: where its instances meet, vertices are welded as exactly as their numbers are known.
 // triangles  geometry.triangles, or some of them
 PreparedMesh prepareGeometry(const Geometry& geometry, std::span<const Triangle> triangles);

@@ -15,9 +15,10 @@
 #include "limber/asset/shape_surface.h"
 #include "limber/core/known_error.h"
 #include "limber/mesh/components.h"
-#include "limber/mesh/prepare.h"
 #include "limber/pipeline/accessories.h"
+#include "limber/pipeline/figure_geometry.h"
 #include "limber/pipeline/hanging_chains.h"
+#include "limber/pipeline/left_out_weights.h"
 #include "limber/pipeline/stand_upright.h"
 
 namespace limber {
@@ -169,8 +170,9 @@ struct Rigged {
   AssetSkeleton kept;
 };
 
-Rigged makeRig(const Asset& asset, const Geometry& geometry, const PreparedMesh& prepared, const Pieces& pieces,
+Rigged makeRig(const Asset& asset, const Geometry& geometry, const FigureSurface& figure, const Pieces& pieces,
                const AutoRigOptions& options, AutoRigReport& report, Progress& progress) {
+  const PreparedMesh& prepared = figure.prepared;
   Rigged result;
   std::vector<Bone> bones;
   Accessories accessories;
@@ -183,7 +185,7 @@ Rigged makeRig(const Asset& asset, const Geometry& geometry, const PreparedMesh&
     const RiggerMethod& rigger = findRigger(options.rigger);
     if (rigger.looksForLimbs) accessories = findAccessories(asset, geometry);
     std::optional<PreparedMesh> body;
-    if (!accessories.empty()) body = prepareGeometry(geometry, bodyTriangles(geometry, accessories));
+    if (!accessories.empty()) body = figureOf(geometry, bodyTriangles(geometry, accessories)).prepared;
     WorkingFrame frame = body ? body->frame : prepared.frame;
     RigOptions rigOptions = optionsIn(frame, options.rig);
     if (body && rigOptions.memory) {
@@ -219,13 +221,14 @@ Rigged makeRig(const Asset& asset, const Geometry& geometry, const PreparedMesh&
                           ? heldByOneJoint(prepared.mesh)
                           : findWeightMethod(options.skinning).compute(prepared.mesh, bones, options.weights, progress);
   report.warnings.append(skin.warnings);
+  bindLeftOut(figure, skin.weights);
   const std::vector<HungAccessory> hung = accessories.empty()
                                               ? std::vector<HungAccessory>()
                                               : hangAccessories(geometry, prepared, accessories, skin.weights);
-  std::set<Index> ofAccessories;
-  for (const HungAccessory& accessory : hung)
-    ofAccessories.insert(accessory.vertices.begin(), accessory.vertices.end());
-  std::erase_if(skin.bridged, [&](Index v) { return ofAccessories.count(v) > 0; });
+  std::set<Index> ofOthers(figure.innerShell.begin(), figure.innerShell.end());
+  ofOthers.insert(figure.surroundings.begin(), figure.surroundings.end());
+  for (const HungAccessory& accessory : hung) ofOthers.insert(accessory.vertices.begin(), accessory.vertices.end());
+  std::erase_if(skin.bridged, [&](Index v) { return ofOthers.count(v) > 0; });
   reportBridged(asset, geometry, prepared, pieces, skin.bridged, report);
   if (options.chains && result.made && !report.matches.empty() && !report.isAbstained) {
     result.chains = chainsOfTails(*result.made);
@@ -267,7 +270,8 @@ AutoRigReport runStages(Asset& asset, const AutoRigOptions& options, Progress& p
   moveByShapes(asset, readShapeWeights(asset), geometry);
 
   progress.stage("weld");
-  const PreparedMesh prepared = prepareGeometry(geometry, geometry.triangles);
+  const FigureSurface figure = figureOf(geometry, geometry.triangles);
+  const PreparedMesh& prepared = figure.prepared;
   const Pieces pieces(prepared.mesh);
   report.sourceVertices = static_cast<Index>(geometry.positions.size());
   report.weldedVertices = prepared.mesh.vertexCount();
@@ -275,7 +279,7 @@ AutoRigReport runStages(Asset& asset, const AutoRigOptions& options, Progress& p
   report.pieces = pieces.solid;
   report.warnings.append(prepared.warnings);
 
-  const Rigged rig = makeRig(asset, geometry, prepared, pieces, options, report, progress);
+  const Rigged rig = makeRig(asset, geometry, figure, pieces, options, report, progress);
 
   progress.stage("write rig");
   if (rig.made) {

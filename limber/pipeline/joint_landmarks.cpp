@@ -9,8 +9,8 @@
 #include "limber/core/counted.h"
 #include "limber/core/known_error.h"
 #include "limber/matching/skeleton_map.h"
-#include "limber/mesh/prepare.h"
 #include "limber/pipeline/accessories.h"
+#include "limber/pipeline/figure_geometry.h"
 #include "limber/rigging/template_rigger.h"
 
 namespace limber {
@@ -86,7 +86,7 @@ std::vector<JointPair> commonJoints(const Skeleton& source, const Skeleton& targ
 std::optional<FittedSkeleton> fittedSkeleton(const Asset& asset, const Geometry& geometry, Progress& progress) {
   const Accessories accessories = findAccessories(asset, geometry);
   const PreparedMesh prepared =
-      prepareGeometry(geometry, accessories.empty() ? geometry.triangles : bodyTriangles(geometry, accessories));
+      figureOf(geometry, accessories.empty() ? geometry.triangles : bodyTriangles(geometry, accessories)).prepared;
   AutoRig rig = rigWithTemplate(prepared.mesh, {}, progress);
   if (rig.isAbstained || rig.matches.empty()) return std::nullopt;
   for (Joint& joint : rig.skeleton.joints) {

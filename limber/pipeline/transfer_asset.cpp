@@ -13,10 +13,12 @@
 #include "limber/asset/rig_io.h"
 #include "limber/asset/unique_names.h"
 #include "limber/core/known_error.h"
-#include "limber/mesh/prepare.h"
+#include "limber/mesh/face_orientation.h"
 #include "limber/pipeline/accessories.h"
 #include "limber/pipeline/blend_shapes.h"
+#include "limber/pipeline/figure_geometry.h"
 #include "limber/pipeline/joint_landmarks.h"
+#include "limber/pipeline/left_out_weights.h"
 #include "limber/pipeline/report_json.h"
 #include "limber/pipeline/transfer_colors.h"
 #include "limber/transfer/offset_transfer.h"
@@ -73,8 +75,8 @@ std::vector<std::string> namesOnSurface(const Accessories& accessories) {
 }
 
 PreparedMesh prepareBody(const Geometry& geometry, const Accessories& accessories) {
-  if (accessories.empty()) return prepareGeometry(geometry, geometry.triangles);
-  return prepareGeometry(geometry, bodyTriangles(geometry, accessories));
+  if (accessories.empty()) return figureOf(geometry, geometry.triangles).prepared;
+  return figureOf(geometry, bodyTriangles(geometry, accessories)).prepared;
 }
 
 void checkHasRig(const Asset& source) {
@@ -171,7 +173,7 @@ std::vector<std::string> transferShapes(const Asset& sourceAsset, const SourceMo
 // The target as the transfer takes it: with the vertices of all of it, but no triangles of its accessories.
 struct TargetModel {
   Geometry geometry;
-  PreparedMesh prepared;
+  FigureSurface figure;
   Accessories accessories;
   TriMesh body;
 };
@@ -179,27 +181,34 @@ struct TargetModel {
 TargetModel readTarget(Geometry geometry, Accessories accessories) {
   TargetModel result;
   result.geometry = std::move(geometry);
-  result.prepared = prepareGeometry(result.geometry, result.geometry.triangles);
+  result.figure = figureOf(result.geometry, result.geometry.triangles);
   result.accessories = std::move(accessories);
-  result.body = result.prepared.mesh;
+  result.body = result.figure.prepared.mesh;
   if (result.accessories.empty()) return result;
   result.body.triangles.clear();
+  std::vector<bool> isLeftOut(result.body.vertexCount(), false);
+  for (const Index v : result.figure.innerShell) isLeftOut[v] = true;
+  for (const Index v : result.figure.surroundings) isLeftOut[v] = true;
   for (const auto& [a, b, c] : bodyTriangles(result.geometry, result.accessories)) {
-    const std::vector<Index>& welded = result.prepared.weldedVertex;
+    const std::vector<Index>& welded = result.figure.prepared.weldedVertex;
     const Triangle t = {welded[a], welded[b], welded[c]};
-    if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) result.body.triangles.push_back(t);
+    if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0] && !isLeftOut[t[0]]) result.body.triangles.push_back(t);
   }
+  mendFaces(result.body);
   return result;
 }
 
 // Landmarks go into the working space of the target, joints come back out of it.
 RigTransfer transferInto(const TargetModel& target, const SourceModel& source, std::vector<JointLandmark> landmarks,
                          const RigTransferOptions& options, Progress& progress) {
-  const WorkingFrame& frame = target.prepared.frame;
+  const WorkingFrame& frame = target.figure.prepared.frame;
   for (JointLandmark& landmark : landmarks) landmark.place = frame.toWorking(landmark.place);
   RigTransfer rig = transferRig(source.body, landmarks, target.body, options, progress);
   for (Vec3& place : rig.places) place = frame.toSource(place);
-  if (!target.accessories.empty()) hangAccessories(target.geometry, target.prepared, target.accessories, rig.weights);
+  bindLeftOut(target.figure, rig.weights);
+  if (!target.accessories.empty()) {
+    hangAccessories(target.geometry, target.figure.prepared, target.accessories, rig.weights);
+  }
   return rig;
 }
 
@@ -233,8 +242,8 @@ TransferReport runTransfer(const Asset& sourceAsset, Asset& target, const Transf
   const SourceModel source = readSource(sourceAsset, std::move(sourceGeometry), ofSource);
   const TargetModel bare = readTarget(std::move(geometry), std::move(ofTarget));
   report.sourceVertices = source.body.mesh.vertexCount();
-  report.targetVertices = bare.prepared.mesh.vertexCount();
-  report.warnings.append(bare.prepared.warnings);
+  report.targetVertices = bare.figure.prepared.mesh.vertexCount();
+  report.warnings.append(bare.figure.prepared.warnings);
   if (const std::vector<std::string> hung = namesOnSurface(bare.accessories); !hung.empty()) {
     report.warnings.add("accessories", "things worn or held are no part of the body; each follows one joint",
                         fmt::format("{}", fmt::join(hung, ", ")), hung.size());
@@ -253,14 +262,14 @@ TransferReport runTransfer(const Asset& sourceAsset, Asset& target, const Transf
 
   progress.stage("write rig");
   if (options.blendShapes) {
-    report.blendShapes = transferShapes(sourceAsset, source, rig, target, bare.geometry, bare.prepared);
+    report.blendShapes = transferShapes(sourceAsset, source, rig, target, bare.geometry, bare.figure.prepared);
   }
   if (options.colors.at) {
     const LaidSource laid = {source.geometry, source.prepared, rig};
-    transferColors(laid, options.colors, target, bare.geometry, bare.prepared);
+    transferColors(laid, options.colors, target, bare.geometry, bare.figure.prepared);
   }
   freeNames(skeleton, target);
-  attachRig(target, bare.geometry, skeleton, expandWeights(rig.weights, bare.prepared.weldedVertex));
+  attachRig(target, bare.geometry, skeleton, expandWeights(rig.weights, bare.figure.prepared.weldedVertex));
   progress.finish();
   report.warnings.append(target.warnings);
   report.stages = progress.stages();

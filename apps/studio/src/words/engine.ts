@@ -103,6 +103,8 @@ const warnings: Named = {
   'no-place': 'limbs of the skeleton have no place in the model', 'low-confidence': 'the model hardly looks like the skeleton',
   'rigid-pieces': 'pieces follow one joint each, as hard parts', 'stray-pieces': 'pieces that float about the model are left out of account',
   'far-vertices': 'points far away from the rest of the model do not count for its size',
+  'repeated-faces': 'faces that are there twice count once', 'reversed-faces': 'faces that lie the wrong way round are taken the other way round',
+  'inner-shell': 'a copy of the surface within it follows the outer one', 'surroundings': 'floors, walls and boxes round the figure follow its root joint',
   'degenerate-triangles': 'triangles without area are left out of the computation', 'no-bone-in-sight': 'no bone is in sight of any point of the surface',
   'morph-targets': 'morph targets are left out', 'lights': 'lights are left out', 'cameras': 'cameras are left out',
   'missing-images': 'pictures that cannot be found are left out', 'unsupported-images': 'pictures that are neither PNG nor JPEG are left out',

@@ -1,0 +1,17 @@
+// The surface of a model's geometry that riggers and methods of weights read.
+#pragma once
+
+#include <span>
+
+#include "limber/asset/geometry.h"
+#include "limber/surface/figure_surface.h"
+
+namespace limber {
+
+// figureSurface of the geometry: where its instances meet, vertices are welded as exactly as their numbers are known.
+// triangles  geometry.triangles, or some of them
+inline FigureSurface figureOf(const Geometry& geometry, std::span<const Triangle> triangles) {
+  return figureSurface(geometry.positions, triangles, storedVertices(geometry));
+}
+
+}  // namespace limber

@@ -1,0 +1,418 @@
+#include "limber/surface/figure_surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include <Eigen/Eigenvalues>
+
+#include "limber/mesh/areas.h"
+#include "limber/mesh/bvh.h"
+#include "limber/mesh/components.h"
+#include "limber/mesh/face_orientation.h"
+#include "limber/mesh/winding_number.h"
+
+namespace limber {
+
+namespace {
+
+constexpr std::size_t kMaxSurroundings = 8;  // components
+constexpr double kMaxFlatness = 0.05;        // thickness of a floor or a wall, of its width
+constexpr double kMinReach = 1.5;            // width of a floor, of that of the figure along the same axis
+constexpr double kMaxSunken = 0.05;          // of the figure's size, below a floor
+constexpr double kMaxAway = 1;               // of the figure's size, from a floor
+constexpr double kMinThickness = 0.12;       // of the figure along a floor's normal, of its size
+constexpr double kMaxFill = 0.5;             // of the figure's box, by its volume
+constexpr double kMinColliderFit = 0.6;      // size of the figure along each axis, of that of a box round it
+constexpr double kMaxPedestal = 0.5;         // height of a pedestal, of that of the figure
+constexpr double kSole = 0.03;               // of the figure's height, from its lowest point: what stands on a pedestal
+constexpr double kMinStride = 0.15;          // of the extent of the feet, the gap between them
+constexpr std::size_t kSampled = 200;        // vertices or triangles of a component
+
+constexpr std::size_t kMaxShells = 32;      // components, the largest
+constexpr double kMinCopyArea = 0.5;        // of the outer surface
+constexpr double kMinEnclosed = 0.9;        // of a shell's vertices within the outer surface
+constexpr double kMaxShellDistance = 0.03;  // sizes of the outer surface, of a shell from it in the mean
+constexpr double kMaxBareDistance = 0.06;   // sizes of the outer surface, from it to a shell below it
+constexpr double kMinCovered = 0.85;        // of the outer surface's vertices with a shell below them
+
+// A connected component of the surface.
+struct Component {
+  std::span<const Index> vertices, triangles;
+  Box box;
+  double area = 0;
+};
+
+// Numbers 0, 1, ... ordered by the group that each belongs to; the first of group g stands at begin[g].
+struct Grouped {
+  std::vector<Index> members;
+  std::vector<std::size_t> begin;
+
+  Grouped(std::size_t memberCount, Index groupCount, const auto& groupOf)
+      : members(memberCount), begin(groupCount + 2) {
+    for (Index i = 0; i < memberCount; ++i) ++begin[groupOf(i) + 2];
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    for (Index i = 0; i < memberCount; ++i) members[begin[groupOf(i) + 1]++] = i;
+  }
+  std::span<const Index> of(Index group) const {
+    return std::span(members).subspan(begin[group], begin[group + 1] - begin[group]);
+  }
+};
+
+// Those that have triangles, the one of the largest box first.
+struct Components {
+  Grouped vertices, triangles;
+  std::vector<Component> list;
+
+  static Components of(const TriMesh& mesh) {
+    Index count = 0;
+    const std::vector<Index> componentOf = vertexComponents(mesh, &count);
+    Components result{{componentOf.size(), count, [&](Index v) { return componentOf[v]; }},
+                      {mesh.triangles.size(), count, [&](Index t) { return componentOf[mesh.triangles[t][0]]; }},
+                      {}};
+    for (Index c = 0; c < count; ++c) {
+      Component component{result.vertices.of(c), result.triangles.of(c), {}, 0};
+      if (component.triangles.empty()) continue;
+      for (const Index v : component.vertices) component.box.add(mesh.position(v));
+      for (const Index t : component.triangles) component.area += triangleArea(mesh, mesh.triangles[t]);
+      result.list.push_back(component);
+    }
+    std::stable_sort(result.list.begin(), result.list.end(),
+                     [](const Component& a, const Component& b) { return a.box.diagonal() > b.box.diagonal(); });
+    return result;
+  }
+};
+
+TriMesh meshOf(const TriMesh& mesh, const Component& component) {
+  TriMesh part{mesh.positions, {}};
+  for (const Index t : component.triangles) part.triangles.push_back(mesh.triangles[t]);
+  return part;
+}
+
+// Evenly chosen vertices of a component.
+std::vector<Vec3> samplesOf(const TriMesh& mesh, std::span<const Index> vertices) {
+  std::vector<Vec3> samples;
+  const std::size_t count = std::min(kSampled, vertices.size());
+  for (std::size_t i = 0; i < count; ++i) samples.push_back(mesh.position(vertices[i * vertices.size() / count]));
+  return samples;
+}
+
+bool isWithin(const Box& inner, const Box& outer, double margin) {
+  return (inner.min.array() >= outer.min.array() - margin).all() &&
+         (inner.max.array() <= outer.max.array() + margin).all();
+}
+
+// The extent of vertices along three axes, the rows of a matrix.
+Box extentAlong(const TriMesh& mesh, const Mat3& axes, std::span<const Index> vertices) {
+  Box extent;
+  for (const Index v : vertices) extent.add(axes * mesh.position(v));
+  return extent;
+}
+
+// The principal axes of a component's surface as rows, the one along which it is thinnest first.
+Mat3 principalAxes(const TriMesh& mesh, const Component& component) {
+  Mat3 moments = Mat3::Zero();
+  for (const Index t : component.triangles) {
+    const Triangle& corners = mesh.triangles[t];
+    const double area = triangleArea(mesh, corners);
+    for (std::size_t k = 0; k < 3; ++k) {  // a triangle's second moments are those of the middles of its edges
+      const Vec3 middle = 0.5 * (mesh.position(corners[k]) + mesh.position(corners[(k + 1) % 3]));
+      const Vec3 arm = middle - component.box.center();
+      moments += area * arm * arm.transpose();
+    }
+  }
+  return Eigen::SelfAdjointEigenSolver<Mat3>(moments).eigenvectors().transpose();
+}
+
+// What stands before surroundings.
+struct Figure {
+  std::vector<Index> vertices;
+  Box box;
+  bool isHollow = false;
+
+  Figure(const TriMesh& mesh, std::span<const Component> components) {
+    double volume = 0;
+    for (const Component& component : components) {
+      vertices.insert(vertices.end(), component.vertices.begin(), component.vertices.end());
+      box.add(component.box.min);
+      box.add(component.box.max);
+      const auto corner = [&](Index v) { return Vec3(mesh.position(v) - component.box.center()); };
+      double six = 0;
+      for (const Index t : component.triangles) {
+        const auto& [a, b, c] = mesh.triangles[t];
+        six += corner(a).dot(corner(b).cross(corner(c)));
+      }
+      volume += std::abs(six) / 6;
+    }
+    isHollow = volume < kMaxFill * box.size().prod();
+  }
+};
+
+// A floor, a wall or a slab that could be surroundings of something, or a convex component.
+struct Backdrop {
+  const Component& component;
+  Mat3 axes;
+  Box extent;
+  bool isFlat = false, isConvex = false;
+
+  Backdrop(const TriMesh& mesh, const Component& of) : component(of), axes(principalAxes(mesh, of)) {
+    extent = extentAlong(mesh, axes, of.vertices);
+    isFlat = extent.size().x() <= kMaxFlatness * std::min(extent.size().y(), extent.size().z());
+    isConvex = !isFlat && liesBehindItsFaces(mesh);
+  }
+
+  bool surrounds(const TriMesh& mesh, const Figure& figure) const {
+    return figure.isHollow && (isFlat ? isFloorOf(mesh, figure) : isColliderOf(mesh, figure));
+  }
+
+ private:
+  bool liesBehindItsFaces(const TriMesh& mesh) const {
+    const std::vector<Vec3> corners = samplesOf(mesh, component.vertices);
+    const double tolerance = 1e-3 * extent.diagonal();
+    const std::size_t count = std::min(kSampled, component.triangles.size());
+    for (std::size_t i = 0; i < count; ++i) {
+      const Triangle& t = mesh.triangles[component.triangles[i * component.triangles.size() / count]];
+      const Vec3 a = mesh.position(t[0]), normal = (mesh.position(t[1]) - a).cross(mesh.position(t[2]) - a);
+      if (!(normal.norm() > 0)) continue;
+      double low = 0, high = 0;
+      for (const Vec3& corner : corners) {
+        const double height = normal.normalized().dot(corner - a);
+        low = std::min(low, height);
+        high = std::max(high, height);
+      }
+      if (std::min(-low, high) > tolerance) return false;
+    }
+    return true;
+  }
+
+  bool isFloorOf(const TriMesh& mesh, const Figure& figure) const {
+    const Box body = extentAlong(mesh, axes, figure.vertices);
+    const double size = figure.box.longestSide();
+    for (const int axis : {1, 2}) {
+      if (extent.size()[axis] < kMinReach * body.size()[axis]) return false;
+      if (body.min[axis] < extent.min[axis] - kMaxSunken * size) return false;
+      if (body.max[axis] > extent.max[axis] + kMaxSunken * size) return false;
+    }
+    const double before = body.min.x() - extent.max.x(), behind = extent.min.x() - body.max.x();
+    const double away = std::max(before, behind);
+    return away > -kMaxSunken * size && away < kMaxAway * size && body.size().x() > kMinThickness * size;
+  }
+
+  bool isColliderOf(const TriMesh& mesh, const Figure& figure) const {
+    const Vec3 size = component.box.size();
+    if (!isWithin(figure.box, component.box, kMaxSunken * size.maxCoeff())) return false;
+    if ((figure.box.size().array() < kMinColliderFit * size.array()).any()) return false;
+    const WindingNumber winding(meshOf(mesh, component));
+    const std::vector<Vec3> samples = samplesOf(mesh, figure.vertices);
+    const auto enclosed = std::count_if(samples.begin(), samples.end(),
+                                        [&](const Vec3& sample) { return std::abs(winding.at(sample)) > 0.5; });
+    return static_cast<double>(enclosed) >= kMinEnclosed * static_cast<double>(samples.size());
+  }
+};
+
+// How many of the components, which begin with the largest, are surroundings of all the others.
+std::size_t backdropsAmong(const TriMesh& mesh, std::span<const Component> components) {
+  std::vector<Backdrop> backdrops;
+  while (backdrops.size() + 1 < components.size() && backdrops.size() < kMaxSurroundings) {
+    const Backdrop backdrop(mesh, components[backdrops.size()]);
+    if (!backdrop.isFlat && !backdrop.isConvex) break;
+    backdrops.push_back(backdrop);
+  }
+  for (std::size_t count = backdrops.size(); count > 0; --count) {
+    const Figure figure(mesh, components.subspan(count));
+    if (std::all_of(backdrops.begin(), backdrops.begin() + static_cast<std::ptrdiff_t>(count),
+                    [&](const Backdrop& backdrop) { return backdrop.surrounds(mesh, figure); })) {
+      return count;
+    }
+  }
+  return 0;
+}
+
+// From where to where something reaches along an axis.
+using Reach = std::pair<double, double>;
+
+// Whether what reaches so leaves a gap, as two feet do.
+bool leavesGap(std::vector<Reach> reaches) {
+  std::sort(reaches.begin(), reaches.end());
+  double end = reaches.front().second, widest = 0;
+  for (const auto& [from, to] : reaches) {
+    widest = std::max(widest, from - end);
+    end = std::max(end, to);
+  }
+  return widest > kMinStride * (end - reaches.front().first);
+}
+
+// Whether all others stand on a component with feet, +Y up.
+bool isPedestal(const TriMesh& mesh, const Component& component, std::span<const Component> others) {
+  const Figure figure(mesh, others);
+  const double height = figure.box.size().y(), top = component.box.max.y();
+  if (!figure.isHollow || component.box.size().y() > kMaxPedestal * height) return false;
+  if (std::abs(figure.box.min.y() - top) > kMaxSunken * height) return false;
+  std::vector<Reach> x, z;
+  for (const Component& other : others) {
+    for (const Index t : other.triangles) {
+      Box sole;
+      for (const Index v : mesh.triangles[t]) {
+        if (mesh.position(v).y() < figure.box.min.y() + kSole * height) sole.add(mesh.position(v));
+      }
+      if (sole.empty()) continue;
+      x.push_back({sole.min.x(), sole.max.x()});
+      z.push_back({sole.min.z(), sole.max.z()});
+      sole.min.y() = sole.max.y() = top;
+      if (!isWithin(sole, component.box, 0)) return false;
+    }
+  }
+  if (!leavesGap(std::move(x)) && !leavesGap(std::move(z))) return false;
+  const Backdrop backdrop(mesh, component);
+  return backdrop.isFlat || backdrop.isConvex;
+}
+
+// The lowest component, where all others lie above it.
+std::optional<std::size_t> lowestOf(std::span<const Component> components) {
+  const auto lowest =
+      std::min_element(components.begin(), components.end(),
+                       [](const Component& a, const Component& b) { return a.box.min.y() < b.box.min.y(); });
+  Box all;
+  for (const Component& component : components) {
+    all.add(component.box.min);
+    all.add(component.box.max);
+  }
+  const double low = lowest->box.max.y() - kMaxSunken * all.size().y();
+  for (auto other = components.begin(); other != components.end(); ++other) {
+    if (other != lowest && other->box.min.y() < low) return std::nullopt;
+  }
+  return static_cast<std::size_t>(lowest - components.begin());
+}
+
+// What is no part of the figure among the components.
+std::vector<Component> surroundingsAmong(const TriMesh& mesh, std::vector<Component> components) {
+  const auto count = static_cast<std::ptrdiff_t>(backdropsAmong(mesh, components));
+  std::vector<Component> surroundings(components.begin(), components.begin() + count);
+  components.erase(components.begin(), components.begin() + count);
+  while (components.size() > 1) {  // steps of a pedestal
+    const std::optional<std::size_t> lowest = lowestOf(components);
+    if (!lowest) break;
+    const Component pedestal = components[*lowest];
+    std::vector<Component> others = components;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(*lowest));
+    if (!isPedestal(mesh, pedestal, others)) break;
+    surroundings.push_back(pedestal);
+    components = std::move(others);
+  }
+  return surroundings;
+}
+
+// Whether one component is a copy of another one's surface within it.
+bool isInnerShell(const TriMesh& mesh, const Component& inner, const Component& outer) {
+  if (inner.area < kMinCopyArea * outer.area || inner.box.diagonal() > outer.box.diagonal()) return false;
+  if (!isWithin(inner.box, outer.box, 0)) return false;
+  const TriMesh outerMesh = meshOf(mesh, outer);
+  const WindingNumber winding(outerMesh);
+  const Bvh outerSurface(outerMesh), innerSurface(mesh, inner.triangles);
+  const std::vector<Vec3> innerSamples = samplesOf(mesh, inner.vertices);
+  double enclosed = 0, distance = 0;
+  for (const Vec3& sample : innerSamples) {
+    if (std::abs(winding.at(sample)) > 0.5) ++enclosed;
+    distance += outerSurface.nearestPoint(sample).distance;
+  }
+  const auto count = static_cast<double>(innerSamples.size());
+  const double size = outer.box.longestSide();
+  if (enclosed < kMinEnclosed * count || distance > kMaxShellDistance * size * count) return false;
+  const std::vector<Vec3> outerSamples = samplesOf(mesh, outer.vertices);
+  const auto covered = std::count_if(outerSamples.begin(), outerSamples.end(), [&](const Vec3& sample) {
+    return innerSurface.nearestPoint(sample).distance < kMaxBareDistance * size;
+  });
+  return static_cast<double>(covered) >= kMinCovered * static_cast<double>(outerSamples.size());
+}
+
+// Moves inner shells out of the components.
+std::vector<Component> takeInnerShells(const TriMesh& mesh, std::vector<Component>& components) {
+  std::vector<Component> shells;
+  for (std::size_t inner = std::min(kMaxShells, components.size()); inner-- > 1;) {
+    const auto end = components.begin() + static_cast<std::ptrdiff_t>(inner);
+    if (std::none_of(components.begin(), end,
+                     [&](const Component& outer) { return isInnerShell(mesh, *end, outer); })) {
+      continue;
+    }
+    shells.push_back(*end);
+    components.erase(end);
+  }
+  return shells;
+}
+
+// By source vertex whether it belongs to one of the components.
+std::vector<bool> sourceVerticesOf(const PreparedMesh& prepared, std::span<const Component> components) {
+  std::vector<bool> isOf(prepared.mesh.vertexCount(), false);
+  for (const Component& component : components) {
+    for (const Index v : component.vertices) isOf[v] = true;
+  }
+  std::vector<bool> isOfSource;
+  for (const Index v : prepared.weldedVertex) isOfSource.push_back(isOf[v]);
+  return isOfSource;
+}
+
+// The vertices that these source vertices became, ascending.
+std::vector<Index> weldedFrom(const std::vector<bool>& isOfSource, const PreparedMesh& prepared) {
+  std::vector<Index> vertices;
+  for (std::size_t source = 0; source < isOfSource.size(); ++source) {
+    if (isOfSource[source]) vertices.push_back(prepared.weldedVertex[source]);
+  }
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  return vertices;
+}
+
+void warnOfFaces(const MendedFaces& mended, Warnings& warnings) {
+  warnings.add("repeated-faces", "triangles that lie on an earlier one count once", {}, mended.repeated);
+  warnings.add(
+      "reversed-faces",
+      "triangles whose neighbours face the other way are taken the other way round (recalculate the normals in "
+      "the file for programs that draw one side of a face)",
+      {}, mended.reversed);
+}
+
+// Takes the triangles of vertices out of a mesh; returns how many.
+std::size_t takeTrianglesOut(std::span<const Index> vertices, TriMesh& mesh) {
+  std::vector<bool> isOut(mesh.vertexCount(), false);
+  for (const Index v : vertices) isOut[v] = true;
+  return std::erase_if(mesh.triangles, [&](const Triangle& t) { return isOut[t[0]]; });
+}
+
+}  // namespace
+
+FigureSurface figureSurface(std::span<const Vec3f> positions, std::span<const Triangle> triangles,
+                            std::span<const StoredVertices> stored) {
+  FigureSurface result{prepareMesh(positions, triangles, stored), {}, {}};
+  PreparedMesh& prepared = result.prepared;
+  MendedFaces mended = mendFaces(prepared.mesh);
+  Components components = Components::of(prepared.mesh);
+  std::vector<bool> isInner, isAround;
+  if (components.list.size() > 1) {
+    isInner = sourceVerticesOf(prepared, takeInnerShells(prepared.mesh, components.list));
+    isAround = sourceVerticesOf(prepared, surroundingsAmong(prepared.mesh, components.list));
+  }
+  if (std::find(isAround.begin(), isAround.end(), true) != isAround.end()) {
+    std::vector<Triangle> figure;  // alone, for the frame is that of the figure
+    for (const Triangle& t : triangles) {
+      if (!isAround[t[0]]) figure.push_back(t);
+    }
+    prepared = prepareMesh(positions, figure, stored);
+    mended = mendFaces(prepared.mesh);
+    result.surroundings = weldedFrom(isAround, prepared);
+    prepared.warnings.add("surroundings",
+                          "triangles of floors, walls, pedestals or boxes round the figure are no part of it; they "
+                          "follow the root joint (take them out of the file if they are not to move)",
+                          {}, triangles.size() - figure.size());
+  }
+  warnOfFaces(mended, prepared.warnings);
+  result.innerShell = weldedFrom(isInner, prepared);
+  if (result.innerShell.empty()) return result;
+  prepared.warnings.add("inner-shell", "triangles of a copy of the surface within it take the weights of the outer one",
+                        {}, takeTrianglesOut(result.innerShell, prepared.mesh));
+  return result;
+}
+
+}  // namespace limber
