@@ -78,7 +78,7 @@ class AnimationImporter {
         continue;
       }
       if (!result.times.empty() && time <= result.times.back()) {
-        result.values.resize(result.values.size() - components);
+        result.values.erase(result.values.end() - static_cast<std::ptrdiff_t>(components), result.values.end());
         result.times.pop_back();
       }
       result.times.push_back(time);
