@@ -114,9 +114,8 @@ TEST(BatchPlan, RefusesOutputsAmongTheBatchesRecords) {
   const testing::TemporaryFolder folder;
   for (const char* name : {".limber-batch/plan.glb", ".LIMBER-batch/records/1-of-1.glb", "m/.limber-batch/a.glb"}) {
     put(folder.path() / name);
-    const std::string plan =
-        R"({"limber_batch": 1, "command": ["info", "{input}", "--json"], "output": ".json", "inputs": [")" +
-        std::string(name) + "\"]}";
+    const std::string plan = R"({"limber_batch": 1, "command": ["rig", "{input}"], "output": ".json", "inputs": [")" +
+                             std::string(name) + "\"]}";
     const bool isInside = name[0] == 'm';  // out/m/.limber-batch is no record
     EXPECT_THAT(problemOf(folder.path(), plan), HasSubstr(isInside ? "none" : "among the batch's records")) << name;
   }
