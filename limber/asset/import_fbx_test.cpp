@@ -249,7 +249,7 @@ TEST(ImportFbx7, WhatTurnsAboutAPivotGoesRoundIt) {
   // 270 degrees within eleven frames of a film, five metres away.
   const double end = 11.0 / 24;
   const Asset asset =
-      animated(vector("RotationPivot", {5, 0, 0}), "Lcl Rotation", {"", "", curve(20, {0, end}, {0, 270})});
+      animated(vector("RotationPivot", {5, 0, 0}), "Lcl Rotation", {"", "", curve(22, {0, end}, {0, 270})});
   const ReadTrack track = trackOf(asset, "translation");
   double worst = 0;
   for (std::size_t k = 1; k < track.times.size(); ++k) {

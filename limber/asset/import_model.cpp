@@ -232,7 +232,7 @@ Asset readWithAssimp(ByteSpan bytes, std::string_view name, const Format& format
 
   auto& edited = const_cast<aiScene&>(*scene);  // the importer owns it and is done with it
   if (format.extension == std::string_view("stl")) dropNormals(edited);
-  restoreObjColors(edited, file.obj);
+  if (!file.obj.colors.empty()) restoreObjColors(edited, file.obj);
   convertColors(edited);
   Convention convention;
   if (format.extension == std::string_view("dae")) convention = daeConvention(edited);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "limber/asset/accessor.h"
 #include "limber/asset/node_edit.h"
@@ -21,11 +22,12 @@ std::size_t shapeCount(const gltf::Document& document, const gltf::Node& node) {
 Track<Vec3f> validKeys(const Track<float>& track) {
   Track<Vec3f> valid{0, track.interpolation, {}, {}};
   const std::size_t perKey = track.interpolation == Interpolation::kCubic ? 3 : 1;
+  float latest = -std::numeric_limits<float>::infinity();
   for (std::size_t k = 0; k < track.times.size(); ++k) {
     const auto first = track.values.begin() + static_cast<std::ptrdiff_t>(k * perKey);
     const auto last = first + static_cast<std::ptrdiff_t>(perKey);
-    const bool isLater = valid.times.empty() || track.times[k] > valid.times.back();
-    if (!std::isfinite(track.times[k]) || !isLater) continue;
+    if (!std::isfinite(track.times[k]) || track.times[k] <= latest) continue;
+    latest = track.times[k];
     if (!std::all_of(first, last, [](float value) { return std::isfinite(value); })) continue;
     valid.times.push_back(track.times[k]);
     std::for_each(first, last, [&](float value) { valid.values.emplace_back(value, 0, 0); });

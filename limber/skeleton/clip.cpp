@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
 
 #include "limber/core/error.h"
+#include "limber/skeleton/key_rounding.h"
 
 namespace limber {
 
@@ -95,9 +95,7 @@ auto hermite(const Track<Value>& track, std::size_t k, double span, double u) {
 template <typename Value>
 auto valueAt(const Track<Value>& track, double seconds) {
   const bool cubic = track.interpolation == Interpolation::kCubic;
-  // Times of frames are double and keys single precision: just before a key of constant tracks is at that key.
-  constexpr double kTimeRounding = 4 * std::numeric_limits<float>::epsilon();
-  const double rounding = track.interpolation == Interpolation::kStep ? kTimeRounding * std::abs(seconds) : 0;
+  const double rounding = track.interpolation == Interpolation::kStep ? keyRounding(seconds) : 0;
   const auto next = std::upper_bound(track.times.begin(), track.times.end(), seconds + rounding,
                                      [](double time, float key) { return time < key; });
   const std::size_t after = static_cast<std::size_t>(next - track.times.begin());

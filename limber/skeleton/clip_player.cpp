@@ -9,6 +9,7 @@
 
 #include "limber/core/error.h"
 #include "limber/core/float4.h"
+#include "limber/skeleton/key_rounding.h"
 
 namespace limber {
 
@@ -99,14 +100,14 @@ void ClipPlayer::Packed::cache(std::size_t group, double seconds) {
   if (curved) still = true;
   const double at = still ? seconds : begin;
   double turn = 0;
+  double changed = justBefore(end);  // where the change is measured: constant keys at the end do not count yet
   for (Index j = first; j < last; ++j) {
     sampleJoint(j, at, from);
     if (still) {
       to.locals[j] = from.locals[j];
       continue;
     }
-    // Just before the end: steps have not happened yet.
-    sampleJoint(j, std::nextafter(end, begin), to);
+    sampleJoint(j, changed, to);
     turn = std::max(turn, from.locals[j].rotation.angularDistance(to.locals[j].rotation));
   }
   if (turn > kLongestTurn) {
@@ -114,14 +115,15 @@ void ClipPlayer::Packed::cache(std::size_t group, double seconds) {
     const double wholeEnd = end;
     begin = begin + steps * part;
     end = std::min(wholeEnd, begin + part);
+    if (end < wholeEnd) changed = end;
     for (Index j = first; j < last; ++j) {
       sampleJoint(j, begin, from);
-      sampleJoint(j, end < wholeEnd ? end : std::nextafter(end, begin), to);
+      sampleJoint(j, changed, to);
     }
   }
   g.begin = still && !std::isfinite(begin) ? seconds : begin;
   g.end = end;
-  const double rate = still || !(end > begin) ? 0 : 1 / (end - begin);
+  const double rate = still || !(changed > begin) ? 0 : 1 / (changed - begin);
   for (Index j = first; j < last; ++j) {
     const std::size_t lane = j - first;
     const Transform &a = from.locals[j], &b = to.locals[j];

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limber/skeleton/key_rounding.h"
+
 namespace limber {
 
 namespace {
@@ -22,7 +24,7 @@ std::vector<float> sorted(std::vector<float> times) {
 template <typename Value>
 void addKeyTimes(const Track<Value>& track, std::vector<float>& times) {
   for (const float time : track.times) {
-    if (track.interpolation == Interpolation::kStep && time > 0) times.push_back(std::nextafter(time, 0.0f));
+    if (track.interpolation == Interpolation::kStep && time > 0) times.push_back(static_cast<float>(justBefore(time)));
     times.push_back(time);
   }
 }
