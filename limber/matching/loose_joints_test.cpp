@@ -55,7 +55,9 @@ TEST(LooseJoints, OthersRideOnWhatIsNearest) {
 
 // What Unreal's mannequin has beside its body: below roots of their own, at other joints' positions.
 Skeleton withControls(Skeleton skeleton) {
-  const auto at = [&](const char* joint) { return restGlobals(skeleton)[skeleton.find(joint).value()].translation(); };
+  const auto at = [&](const char* joint) -> Vec3 {
+    return restGlobals(skeleton)[skeleton.find(joint).value()].translation();
+  };
   const auto add = [&](const char* name, const char* parent, const Vec3& position) {
     limber::testing::addJoint(skeleton, name, parent, position - at(parent));
   };

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "limber/anatomy/body_part.h"
@@ -16,10 +17,11 @@ namespace limber::testing {
 
 // At the end; the parent is one that is there, or "".
 inline void addJoint(Skeleton& skeleton, const std::string& name, const std::string& parent, const Vec3& offset) {
-  Joint& joint = skeleton.joints.emplace_back();
+  Joint joint;
   joint.name = name;
   joint.parent = skeleton.find(parent);
   joint.rest.translation = offset;
+  skeleton.joints.push_back(std::move(joint));
 }
 
 // The same, called by nothing that means a part of a body.
