@@ -25,36 +25,23 @@ struct Guesses {
   std::optional<PartField> field;
 };
 
-// Mean position of the declared joints of these states; none where there are none.
-std::optional<Vec3> meanOf(const BodyReading& reading, std::initializer_list<PartState> states) {
-  Vec3 sum = Vec3::Zero();
-  std::size_t count = 0;
-  for (Index j = 0; j < reading.declared.size(); ++j) {
-    const std::optional<PartState> state = reading.declared[j] ? stateOf(reading.declared[j]->role) : std::nullopt;
-    if (!state || std::find(states.begin(), states.end(), *state) == states.end()) continue;
-    sum += reading.positions[j];
-    ++count;
-  }
-  return count > 0 ? std::optional<Vec3>(sum / static_cast<double>(count)) : std::nullopt;
-}
-
-// What the names of a convention say for a guess of the axes, a log-likelihood: people are upright from their feet to
-// their shoulders. Of sides they say no more than other words do where form tells: a model that was mirrored has the
+// What the names of a convention say for a hypothesis of the axes, a log-likelihood: people are upright from their feet
+// to their shoulders. Of sides they say no more than other words do where form tells: a model that was mirrored has the
 // names of before.
-double conventionScore(const BodyReading& reading, const Axes& guess, bool sidesByNames) {
+double conventionScore(const BodyReading& reading, const Axes& axes, bool sidesByNames) {
   constexpr double kUp = 10, kSides = 7;  // of flat rest poses read in a frame that crawls from 5 on right
   if (!reading.convention) return 0;
   double score = 0, votes = 0;
-  const std::optional<Vec3> arms = meanOf(reading, {PartState::kArmUpper}),
-                            feet = meanOf(reading, {PartState::kLegEnd});
-  if (arms && feet && (*arms - *feet).norm() > 0) score += kUp * guess.up.dot((*arms - *feet).normalized());
+  const std::optional<Vec3> arms = meanPosition(reading.declared, reading.positions, {JointRole::kUpperArm}),
+                            feet = meanPosition(reading.declared, reading.positions, {JointRole::kFoot});
+  if (arms && feet && (*arms - *feet).norm() > 0) score += kUp * axes.up.dot((*arms - *feet).normalized());
   if (!sidesByNames) return score;
   for (const HalfJoint& half : reading.body.joints) {
     if (!half.partner || !reading.declared[half.joint]) continue;
     const Side side = reading.declared[half.joint]->side;
     if (side != Side::kCenter) votes += side == Side::kLeft ? 1 : -1;
   }
-  return score + (votes * guess.left().dot(reading.body.lateral) > 0 ? kSides : 0);
+  return score + (votes * axes.left().dot(reading.body.lateral) > 0 ? kSides : 0);
 }
 
 Guesses readUnderEach(const BodyReading& reading, std::span<const std::uint32_t> allowed, const PartWeights& weights,

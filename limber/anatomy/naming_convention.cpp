@@ -347,7 +347,7 @@ class Finder {
         }
       });
     }
-    // Of programs that share their names that whose prefix they have.
+    // Where programs use the same names, the one whose prefix the joints have.
     const auto rank = [&](const Vote& vote) {
       return std::pair(isWhole(vote.core), vote.named * (hasOwnPrefix_[vote.convention] ? 2 : 1));
     };
@@ -408,8 +408,8 @@ bool isFinger(JointRole role) {
 // Takes away the roles that the tree contradicts.
 class TreeCheck {
  public:
-  TreeCheck(const Skeleton& skeleton, ConventionMatch& match)
-      : tree_(skeleton), match_(match), rest_(restPositions(skeleton)) {}
+  TreeCheck(const Skeleton& skeleton, std::span<const Vec3> rest, ConventionMatch& match)
+      : tree_(skeleton), match_(match), rest_(rest) {}
 
   // False where the tree is not the convention's.
   bool agrees() {
@@ -522,34 +522,20 @@ class TreeCheck {
 
   JointTree tree_;
   ConventionMatch& match_;
-  std::vector<Vec3> rest_;  // #J
+  std::span<const Vec3> rest_;  // #J
 };
-
-// Mean rest position of the joints of these roles; none where there are none.
-std::optional<Vec3> meanOf(const ConventionMatch& match, std::span<const Vec3> rest,
-                           std::initializer_list<JointRole> roles) {
-  Vec3 sum = Vec3::Zero();
-  std::size_t count = 0;
-  for (std::size_t j = 0; j < rest.size(); ++j) {
-    if (!match.roles[j] || std::find(roles.begin(), roles.end(), match.roles[j]->role) == roles.end()) continue;
-    sum += rest[j];
-    ++count;
-  }
-  if (count == 0) return std::nullopt;
-  return sum / static_cast<double>(count);
-}
 
 // Animals that are named as people are: the trunk lies across the legs, and the arms reach as low as these. Of people
 // the arms of no rest pose do.
-bool standsOnArms(const Skeleton& skeleton, const ConventionMatch& match) {
-  constexpr double kAcross =
-      0.85;  // cosine between trunk and legs, 32 degrees: above it the trunk goes on from the legs
+bool standsOnArms(const ConventionMatch& match, std::span<const Vec3> rest) {
+  // Cosine between trunk and legs, 32 degrees: above it the trunk goes on from the legs.
+  constexpr double kAcross = 0.85;
   // Fractions of the legs' length by which hands, or elbows where there are no hands, may be higher than feet.
   constexpr double kHands = 0.3, kElbows = 0.7;
-  const std::vector<Vec3> rest = restPositions(skeleton);
-  const auto hips = meanOf(match, rest, {JointRole::kUpperLeg}), feet = meanOf(match, rest, {JointRole::kFoot}),
-             shoulders = meanOf(match, rest, {JointRole::kUpperArm}), hands = meanOf(match, rest, {JointRole::kHand}),
-             elbows = meanOf(match, rest, {JointRole::kLowerArm});
+  const auto at = [&](JointRole role) { return meanPosition(match.roles, rest, {role}); };
+  const std::optional<Vec3> hips = at(JointRole::kUpperLeg), feet = at(JointRole::kFoot),
+                            shoulders = at(JointRole::kUpperArm), hands = at(JointRole::kHand),
+                            elbows = at(JointRole::kLowerArm);
   if (!hips || !feet || !shoulders || (!hands && !elbows)) return false;
   const Vec3 legs = *feet - *hips, trunk = *shoulders - *hips;
   if (legs.norm() <= 0 || trunk.norm() <= 0) return false;
@@ -563,8 +549,22 @@ bool standsOnArms(const Skeleton& skeleton, const ConventionMatch& match) {
 std::optional<ConventionMatch> findConvention(const Skeleton& skeleton) {
   if (skeleton.joints.size() < kMinCoreJoints) return std::nullopt;
   std::optional<ConventionMatch> match = Finder(skeleton).find();
-  if (!match || !TreeCheck(skeleton, *match).agrees() || standsOnArms(skeleton, *match)) return std::nullopt;
+  if (!match) return std::nullopt;
+  const std::vector<Vec3> rest = restPositions(skeleton);
+  if (!TreeCheck(skeleton, rest, *match).agrees() || standsOnArms(*match, rest)) return std::nullopt;
   return match;
+}
+
+std::optional<Vec3> meanPosition(std::span<const std::optional<NamedRole>> jointRoles, std::span<const Vec3> positions,
+                                 std::initializer_list<JointRole> roles) {
+  Vec3 sum = Vec3::Zero();
+  std::size_t count = 0;
+  for (std::size_t j = 0; j < positions.size(); ++j) {
+    if (!jointRoles[j] || std::find(roles.begin(), roles.end(), jointRoles[j]->role) == roles.end()) continue;
+    sum += positions[j];
+    ++count;
+  }
+  return count > 0 ? std::optional<Vec3>(sum / static_cast<double>(count)) : std::nullopt;
 }
 
 std::optional<PartState> stateOf(JointRole role) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <initializer_list>
 #include <optional>
 #include <span>
 #include <string>
@@ -98,10 +99,15 @@ struct ConventionMatch {
   std::vector<Index> contradicted;
 };
 
-// The convention that names most of the skeleton's joints, where it names enough of a body (kMinCoreJoints) most of what it
-// names is attached as the body's parts are, and the limbs are those of its bodies (no animal on arms, no third bone). Any prefix that the names share is passed over, and numbers that
-// exporters put behind every name. Cost: a few look-ups a joint, 20 us for 60 joints.
+// The convention that names most of the skeleton's joints, where it names enough of a body (kMinCoreJoints), most of
+// what it names is attached as the body's parts are, and the limbs are those of its bodies (no animal on arms, no third
+// bone). Any prefix that all names have is passed over, and numbers that exporters put behind every name. Cost: a few
+// look-ups a joint, 20 us for 60 joints.
 std::optional<ConventionMatch> findConvention(const Skeleton& skeleton);
+
+// Mean position of the joints that have one of these roles; none where no joint has. jointRoles, positions: #J.
+std::optional<Vec3> meanPosition(std::span<const std::optional<NamedRole>> jointRoles, std::span<const Vec3> positions,
+                                 std::initializer_list<JointRole> roles);
 
 // The segment of a limb, or the part, that a role is; none for those that may be several things (tips, helpers, ...).
 std::optional<PartState> stateOf(JointRole role);

@@ -12,8 +12,9 @@ namespace limber {
 
 namespace {
 
-constexpr double kUprightSlope =
-    4;  // rise over run: people stand within a few degrees of it; a beast's head lies before its feet, too
+// Rise over run from feet to head: people are within a few degrees of upright; a beast's head lies before its feet,
+// too.
+constexpr double kUprightSlope = 4;
 // That are looked at: more of a long recording tell nothing new, and a file may have joints without channels.
 constexpr std::size_t kMaxFrames = 2000, kMaxPositions = 4000000;
 constexpr double kAbout = 0.7;  // cosine of 45 degrees, about
