@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <span>
 #include <string>
+#include <utility>
 
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
@@ -151,42 +153,57 @@ Error importError(std::string message, const std::string& mainName, std::string_
   return Error(ErrorCode::kBadData, message.empty() ? "the importer does not say why" : validUtf8(message));
 }
 
-// Gives the vertices the colours that prepareObj put aside.
-void restoreObjColors(aiScene& scene, const ObjText& obj) {
+// Gives the vertices the colours that prepareObj put aside; `numbers` says whether theirs stay, behind these.
+void restoreObjColors(aiScene& scene, const ObjText& obj, ObjNumbers numbers) {
   for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
     aiMesh& mesh = *scene.mMeshes[m];
-    for (unsigned v = 0; mesh.mColors[0] && v < mesh.mNumVertices; ++v) {
-      aiColor4D& c = mesh.mColors[0][v];
-      const std::size_t number = static_cast<std::size_t>(c.r) + kObjColorBase * static_cast<std::size_t>(c.g);
-      const std::array<float, 4>& color = obj.colors.at(number);
-      c = aiColor4D(color[0], color[1], color[2], color[3]);
+    aiColor4D* const numbered = std::exchange(mesh.mColors[0], nullptr);
+    if (!numbered) continue;
+    unsigned sets = 0;
+    if (!obj.colors.empty()) {
+      aiColor4D* const colors = mesh.mColors[sets++] = new aiColor4D[mesh.mNumVertices];
+      for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
+        const aiColor4D& n = numbered[v];
+        const std::array<float, 4>& c =
+            obj.colors.at(static_cast<std::size_t>(n.r) + kObjNumberBase * static_cast<std::size_t>(n.g));
+        colors[v] = aiColor4D(c[0], c[1], c[2], c[3]);
+      }
+    }
+    if (numbers == ObjNumbers::kKept) {
+      mesh.mColors[sets] = numbered;
+    } else {
+      delete[] numbered;
     }
   }
 }
 
-// The colours of all vertices as glTF has them. Files have them as sRGB; where any is above 1 they are bytes. Vertices
-// without one are white.
-void convertColors(aiScene& scene) {
-  std::vector<aiColor4D*> colors;
-  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
-    const aiMesh& mesh = *scene.mMeshes[m];
-    for (unsigned set = 0; set < mesh.GetNumColorChannels(); ++set) {
-      for (unsigned v = 0; v < mesh.mNumVertices; ++v) colors.push_back(&mesh.mColors[set][v]);
-    }
-  }
+// `colors` (r, g, b, a of each vertex of a file) as glTF has them. Files have them as sRGB; where any is above 1 they
+// are bytes. Vertices without one are white.
+void convertColors(std::span<const std::span<float, 4>> colors) {
   float most = 0, mostAlpha = 0;
-  for (const aiColor4D* c : colors) {
-    for (const float x : {c->r, c->g, c->b}) most = x > most ? x : most;
-    mostAlpha = c->a > mostAlpha ? c->a : mostAlpha;
+  for (const std::span<float, 4> c : colors) {
+    for (const float x : c.first<3>()) most = x > most ? x : most;
+    mostAlpha = c[3] > mostAlpha ? c[3] : mostAlpha;
   }
   const auto unit = [](float x, float largest) {
     if (!std::isfinite(x)) return 1.0;
     return std::clamp(largest > 1 ? x / 255.0 : double{x}, 0.0, 1.0);
   };
-  for (aiColor4D* c : colors) {
-    for (float* x : {&c->r, &c->g, &c->b}) *x = static_cast<float>(linearOf(unit(*x, most)));
-    c->a = static_cast<float>(unit(c->a, mostAlpha));
+  for (const std::span<float, 4> c : colors) {
+    for (float& x : c.first<3>()) x = static_cast<float>(linearOf(unit(x, most)));
+    c[3] = static_cast<float>(unit(c[3], mostAlpha));
   }
+}
+
+void convertColors(aiScene& scene) {
+  std::vector<std::span<float, 4>> colors;
+  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+    const aiMesh& mesh = *scene.mMeshes[m];
+    for (unsigned set = 0; set < mesh.GetNumColorChannels(); ++set) {
+      for (unsigned v = 0; v < mesh.mNumVertices; ++v) colors.emplace_back(&mesh.mColors[set][v].r, 4);
+    }
+  }
+  convertColors(colors);
 }
 
 // What Assimp is given of a file, and what is known of it beside.
@@ -203,7 +220,10 @@ Prepared prepare(ByteSpan bytes, std::string_view extension) {
   Prepared result;
   result.raw = extension == "stl" ? checkedStl(bytes) : bytes;
   result.trailing = bytes.size() - result.raw.size();
-  if (extension == "obj") result.obj = prepareObj(bytes);
+  if (extension == "obj") {
+    result.obj = prepareObj(bytes);
+    convertColors(std::vector<std::span<float, 4>>(result.obj.colors.begin(), result.obj.colors.end()));
+  }
   if (extension == "dae") result.dae = prepareDae(bytes);
   return result;
 }
@@ -220,7 +240,8 @@ void warnOfPrepared(Asset& asset, const Prepared& file, std::size_t movedTexture
   asset.warnings.add("trailing-bytes", "bytes behind the last triangle are left out", {}, file.trailing);
 }
 
-Asset readWithAssimp(ByteSpan bytes, std::string_view name, const Format& format, const Resolver& resolver) {
+Asset readWithAssimp(ByteSpan bytes, std::string_view name, const Format& format, const Resolver& resolver,
+                     ObjNumbers numbers) {
   const Prepared file = prepare(bytes, format.extension);
   const std::string mainName = std::string("model.") + format.extension;
   auto* io = new ImportIo(file.bytes(), mainName, resolver);
@@ -232,8 +253,11 @@ Asset readWithAssimp(ByteSpan bytes, std::string_view name, const Format& format
 
   auto& edited = const_cast<aiScene&>(*scene);  // the importer owns it and is done with it
   if (format.extension == std::string_view("stl")) dropNormals(edited);
-  if (!file.obj.colors.empty()) restoreObjColors(edited, file.obj);
-  convertColors(edited);
+  if (format.extension == std::string_view("obj")) {
+    restoreObjColors(edited, file.obj, numbers);
+  } else {
+    convertColors(edited);
+  }
   Convention convention;
   if (format.extension == std::string_view("dae")) convention = daeConvention(edited);
   Asset asset = convertScene(*scene, *io, convention.scale, convention.axes);
@@ -284,11 +308,11 @@ SandboxLimits limitsFor(std::size_t size) {
 
 }  // namespace
 
-Asset importModel(ByteSpan bytes, std::string_view name, const Resolver& resolver) {
+Asset importModel(ByteSpan bytes, std::string_view name, const Resolver& resolver, ObjNumbers numbers) {
   const Format& format = formatOf(bytes, name);
   try {
-    const Bytes message =
-        runIsolated([&] { return pack(readWithAssimp(bytes, name, format, resolver)); }, limitsFor(bytes.size()));
+    const Bytes message = runIsolated([&] { return pack(readWithAssimp(bytes, name, format, resolver, numbers)); },
+                                      limitsFor(bytes.size()));
     Asset asset = unpack(message);
     asset.format = format.extension;
     return asset;

@@ -3,6 +3,7 @@
 
 #include <string_view>
 
+#include "limber/asset/import_obj.h"
 #include "limber/asset/read.h"
 
 namespace limber {
@@ -18,6 +19,9 @@ namespace limber {
 // Throws Error kBadData ("cannot be read as OBJ: ...") for a broken file or one with a position that is not finite, and
 // kUnsupported for other formats. Assimp runs in a process of its own (import_sandbox.h), so that no file can crash or
 // hang this one. The result has not passed checkAsset yet.
-Asset importModel(ByteSpan bytes, std::string_view name, const Resolver& resolver);
+//
+// kKept numbers the vertices of an OBJ file as readNumberedObj does.
+Asset importModel(ByteSpan bytes, std::string_view name, const Resolver& resolver,
+                  ObjNumbers numbers = ObjNumbers::kDropped);
 
 }  // namespace limber

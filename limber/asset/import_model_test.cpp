@@ -271,6 +271,19 @@ TEST(ImportObj, LooseVerticesAreCounted) {
   EXPECT_EQ(warningKinds(asset.warnings), std::vector<std::string>{"loose-vertices"});
 }
 
+TEST(ImportObj, CornersMayCountBackwards) {
+  const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvn 0 0 1\n";
+  const std::vector<float> uvs =
+      attributeOf(import(square + "f 1/1/1 2/2/1 3/3/1 4/4/1\n", "t.obj"), "TEXCOORD_0");
+  for (const char* face : {"f -4/-4/-1 -3/-3/-1 -2/-2/-1 -1/-1/-1\n", "f -4/1/1 2/-3/-1 -2/3/1 4/-1/1 # all of it\n",
+                           "f 1/1/1 \\\n2/2/1 3/3/1\\\r\n 4/4/1#all of it\n"}) {
+    const Asset asset = import(square + face, "t.obj");
+    EXPECT_EQ(collectGeometry(asset).triangles.size(), 2u) << face;
+    EXPECT_EQ(attributeOf(asset, "TEXCOORD_0"), uvs) << face;
+    EXPECT_TRUE(warningKinds(asset.warnings).empty()) << face;
+  }
+}
+
 TEST(ImportObj, NormalsWithoutADirectionAreMadeAnew) {
   const Asset asset = import("v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 0\nf 1//1 2//1 3//1\n", "t.obj");
   EXPECT_EQ(warningKinds(asset.warnings), std::vector<std::string>{"invalid-normals"});

@@ -2,68 +2,20 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <string_view>
 
 #include <fmt/format.h>
 
+#include "limber/asset/obj_lines.h"
 #include "limber/core/error.h"
 #include "limber/core/parse_number.h"
 
 namespace limber {
 
 namespace {
-
-bool isSpace(char c) {
-  return c == ' ' || c == '\t';
-}
-
-// Takes the next word off the front of a line; empty at its end or at a comment.
-std::string_view nextWord(std::string_view& line) {
-  while (!line.empty() && isSpace(line.front())) line.remove_prefix(1);
-  if (!line.empty() && line.front() == '#') line = {};
-  std::size_t length = 0;
-  while (length < line.size() && !isSpace(line[length])) ++length;
-  const std::string_view word = line.substr(0, length);
-  line.remove_prefix(length);
-  return word;
-}
-
-std::string_view kindOf(std::string_view line) {
-  return nextWord(line);
-}
-
-// A vertex or what is made of vertices.
-bool isElement(std::string_view kind) {
-  return kind == "v" || kind == "vt" || kind == "vn" || kind == "f" || kind == "l" || kind == "p";
-}
-
-// Calls `visit(line)` for each line; the parts of an element that '\' continues are one.
-template <typename Visit>
-void forEachLine(ByteSpan bytes, const Visit& visit) {
-  std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  const auto take = [&text] {
-    const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
-    const std::string_view line = text.substr(0, end);
-    text.remove_prefix(end);
-    text.remove_prefix(text.starts_with("\r\n") ? 2 : std::min<std::size_t>(text.size(), 1));
-    return line;
-  };
-  std::string joined;
-  while (!text.empty()) {
-    std::string_view line = take();
-    if (line.ends_with('\\') && isElement(kindOf(line))) {
-      joined = line;
-      while (joined.ends_with('\\')) {
-        joined.back() = ' ';
-        joined += take();
-      }
-      line = joined;
-    }
-    visit(line);
-  }
-}
 
 // The number at the front of "12/3/4" or "-1", which is taken off; 0, which OBJ never uses, where there is none.
 std::int64_t takeNumber(std::string_view& word) {
@@ -74,16 +26,6 @@ std::int64_t takeNumber(std::string_view& word) {
     if (number <= (std::int64_t{1} << 40)) number = 10 * number + (word.front() - '0');
   }
   return negative ? -number : number;
-}
-
-// The words of a "v" line behind its kind, at most eight.
-std::vector<std::string_view> wordsOf(std::string_view line) {
-  constexpr std::size_t kEnough = 8;
-  std::vector<std::string_view> words;
-  for (std::string_view word = nextWord(line); !word.empty() && words.size() < kEnough; word = nextWord(line)) {
-    words.push_back(word);
-  }
-  return words;
 }
 
 std::optional<double> numberOf(std::string_view word) {
@@ -99,23 +41,18 @@ class ObjPreparer {
   explicit ObjPreparer(ByteSpan bytes) : bytes_(bytes) {}
 
   ObjText prepare() {
-    bool hasColors = false;
-    forEachLine(bytes_, [&](std::string_view line) {
-      const std::string_view kind = nextWord(line);
-      count(kind, total_);
-      hasColors = hasColors || (kind == "v" && wordsOf(line).size() >= 6);
-    });
+    forEachObjLine(bytes_, [&](std::string_view line) { count(nextObjWord(line), total_); });
     used_.resize(static_cast<std::size_t>(total_[0]), false);
-    if (hasColors) result_.colors.reserve(used_.size());
-    result_.text.reserve(bytes_.size());
+    result_.text.reserve(bytes_.size() + 12 * used_.size());
     std::size_t faces = 0;
-    forEachLine(bytes_, [&](std::string_view line) {
-      const std::string_view kind = kindOf(line);
+    forEachObjLine(bytes_, [&](std::string_view line) {
+      std::string_view rest = line;
+      const std::string_view kind = nextObjWord(rest);
       const bool isFace = kind == "f" || kind == "l" || kind == "p";
-      if (isFace && !isValidFace(line)) {
-        ++result_.invalidFaces;
-      } else if (kind == "v" && hasColors) {
-        addColored(line);
+      if (isFace) {
+        addFace(kind, rest);
+      } else if (kind == "v") {
+        addVertex(rest);
       } else if (!kind.empty()) {  // no comments: behind a backslash at their end Assimp goes on
         result_.text += line;
       }
@@ -128,6 +65,7 @@ class ObjPreparer {
     }
     const auto used = static_cast<std::size_t>(std::count(used_.begin(), used_.end(), true));
     if (used > 0) result_.looseVertices = used_.size() - used;
+    if (!hasColors_) result_.colors.clear();
     return std::move(result_);
   }
 
@@ -138,52 +76,75 @@ class ObjPreparer {
     if (kind == "vn") ++counts[2];
   }
 
-  // Marks the vertices that it uses, too.
-  bool isValidFace(std::string_view line) {
-    nextWord(line);
-    std::vector<std::size_t> vertices;
-    for (std::string_view word = nextWord(line); !word.empty(); word = nextWord(line)) {
-      for (std::size_t part = 0; part < 3; ++part) {
-        if (part > 0 && !word.starts_with('/')) break;
-        if (part > 0) word.remove_prefix(1);
-        if (part > 0 && (word.empty() || word.front() == '/')) continue;  // "1//2", "1/"
-        const std::int64_t number = takeNumber(word);
-        if (number == 0) return false;
-        if (total_[part] == 0 && part > 0) continue;  // as nobody asks for it
-        const std::int64_t at = number < 0 ? seen_[part] + number : number - 1;
-        if (at < 0 || at >= total_[part]) return false;
-        if (part == 0) vertices.push_back(static_cast<std::size_t>(at));
+  // Corners "v/vt/vn", with numbers that count from the file's beginning.
+  void addFace(std::string_view kind, std::string_view line) {
+    corners_ = kind;
+    vertices_.clear();
+    for (std::string_view word = nextObjWord(line); !word.empty(); word = nextObjWord(line)) {
+      corners_ += ' ';
+      if (!addCorner(word)) {
+        ++result_.invalidFaces;
+        return;
       }
     }
-    for (const std::size_t v : vertices) used_[v] = true;
+    for (const std::size_t v : vertices_) used_[v] = true;
+    result_.text += corners_;
+  }
+
+  // False where it names what is not there.
+  bool addCorner(std::string_view word) {
+    for (std::size_t part = 0; part < 3; ++part) {
+      if (part > 0 && !word.starts_with('/')) break;
+      if (part > 0) {
+        corners_ += '/';
+        word.remove_prefix(1);
+      }
+      if (part > 0 && (word.empty() || word.front() == '/')) continue;  // "1//2", "1/"
+      const std::int64_t number = takeNumber(word);
+      if (number == 0) return false;
+      const std::int64_t at = number < 0 ? seen_[part] + number : number - 1;
+      const bool isAsked = part == 0 || total_[part] > 0;
+      if (isAsked && (at < 0 || at >= total_[part])) return false;
+      fmt::format_to(std::back_inserter(corners_), "{}", isAsked ? at + 1 : number);
+      if (part == 0) vertices_.push_back(static_cast<std::size_t>(at));
+    }
     return true;
   }
 
-  // "v x y z [w] [r g b [a]]"
-  void addColored(std::string_view line) {
-    nextWord(line);
-    std::vector<std::string_view> words = wordsOf(line);
+  // "x y z [w] [r g b [a]]"
+  void addVertex(std::string_view line) {
+    std::array<std::string_view, 7> words;
+    std::size_t count = 0;
+    for (std::string_view word = nextObjWord(line); !word.empty() && count < words.size(); word = nextObjWord(line)) {
+      words[count++] = word;
+    }
     constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
     std::array<float, 4> color = {kNone, kNone, kNone, kNone};
-    for (std::size_t c = 0; words.size() >= 6 && c < 4; ++c) {
-      const std::optional<double> value = c + 3 < words.size() ? numberOf(words[c + 3]) : 1;
+    for (std::size_t c = 0; count >= 6 && c < 4; ++c) {
+      const std::optional<double> value = c + 3 < count ? numberOf(words[c + 3]) : 1;
       if (value) color[c] = static_cast<float>(*value);
     }
+    hasColors_ = hasColors_ || count >= 6;
     result_.text += 'v';
-    const double w = words.size() == 4 ? numberOf(words[3]).value_or(1) : 1;
-    for (std::size_t i = 0; i < 3 && i < words.size(); ++i) {
+    const double w = count == 4 ? numberOf(words[3]).value_or(1) : 1;
+    for (std::size_t i = 0; i < 3 && i < count; ++i) {
       result_.text += ' ';
       const std::optional<double> value = w != 1 && w != 0 ? numberOf(words[i]) : std::nullopt;
       result_.text += value ? fmt::format("{}", *value / w) : std::string(words[i]);
     }
     const std::size_t number = result_.colors.size();
-    result_.text += fmt::format(" {} {} 0", number % kObjColorBase, number / kObjColorBase);
+    if (count >= 3) {
+      fmt::format_to(std::back_inserter(result_.text), " {} {} 0", number % kObjNumberBase, number / kObjNumberBase);
+    }
     result_.colors.push_back(color);
   }
 
   ByteSpan bytes_;
   Counts total_{}, seen_{};
   std::vector<bool> used_;  // #v
+  bool hasColors_ = false;
+  std::string corners_;                // of the face at hand, as it is written
+  std::vector<std::size_t> vertices_;  // of the face at hand
   ObjText result_;
 };
 
@@ -195,12 +156,12 @@ ObjText prepareObj(ByteSpan bytes) {
 
 std::size_t countMovedMtlTextures(ByteSpan bytes) {
   std::size_t count = 0;
-  forEachLine(bytes, [&](std::string_view line) {
-    const std::string_view kind = nextWord(line);
+  forEachObjLine(bytes, [&](std::string_view line) {
+    const std::string_view kind = nextObjWord(line);
     if (!kind.starts_with("map_") && kind != "bump" && kind != "norm" && kind != "refl" && kind != "disp") return;
     double usual = 0;
     bool isOption = false, isMoved = false;
-    for (std::string_view word = nextWord(line); !word.empty(); word = nextWord(line)) {
+    for (std::string_view word = nextObjWord(line); !word.empty(); word = nextObjWord(line)) {
       if (word.front() == '-' && !numberOf(word)) {
         isOption = word == "-s" || word == "-o" || word == "-t";
         usual = word == "-s" ? 1 : 0;

@@ -6,13 +6,18 @@
 #include <string>
 #include <vector>
 
+#include "limber/asset/obj_lines.h"
 #include "limber/core/file.h"
 
 namespace limber {
 
+// What becomes of the numbers that an OBJ file gives its vertices.
+enum class ObjNumbers { kDropped, kKept };
+
 struct ObjText {
-  // For Assimp: without the faces that are counted below, with each element on one line. Where vertices have colours
-  // all have one, which says their number: n is (n % kObjColorBase, n / kObjColorBase, 0).
+  // For Assimp: without the faces that are counted below, with each element on one line and no number that counts
+  // backwards. Each vertex has a colour that says its number in the file: n is
+  // (n % kObjNumberBase, n / kObjNumberBase, 0).
   std::string text;
   std::vector<std::array<float, 4>> colors;  // #v, as the file has them, NaN where it has none; empty: none has any
   // "v" lines that no "f", "l" or "p" line names: Assimp leaves these vertices out. 0 where none is named at all (a
@@ -20,8 +25,6 @@ struct ObjText {
   std::size_t looseVertices = 0;
   std::size_t invalidFaces = 0;  // that name what is not there
 };
-
-inline constexpr std::size_t kObjColorBase = 65536;
 
 // Colours are three or four numbers behind a vertex' place; alpha is 1 where it is not given. Throws Error kBadData
 // where all faces name what is not there. Cost: two passes over the text.

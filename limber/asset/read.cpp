@@ -118,6 +118,23 @@ Asset motionFileAsset(const Motion& motion, std::string_view name, const char* f
   return asset;
 }
 
+// What `read` gives, checked; throws with the file's name.
+template <typename Read>
+Asset finished(std::string_view name, const Read& read) {
+  try {
+    Asset asset = read();
+    asset.name = name;
+    checkAsset(asset);
+    repairWeights(asset);
+    startAtZero(asset);
+    return asset;
+  } catch (const Error& error) {
+    throwWithin(error, name);
+  } catch (const std::bad_alloc&) {
+    throw KnownError(ErrorKind::kOutOfMemory, {ErrorCode::kLimit, "does not fit in memory", std::string(name)});
+  }
+}
+
 }  // namespace
 
 Resolver folderResolver(const fs::path& folder) {
@@ -135,18 +152,18 @@ Asset readAsset(ByteSpan bytes, std::string_view name, const Resolver& resolver)
   const std::string extension = lowerExtension(std::string(name));
   if (looksLikeBvh(bytes) || extension == ".bvh") return motionFileAsset(readBvh(bytes, name), name, "bvh");
   if (looksLikeNpz(bytes) || extension == ".npz") return motionFileAsset(readSmplMotion(bytes, name), name, "npz");
-  try {
-    Asset asset = readAny(bytes, name, resolver);
-    asset.name = name;
-    checkAsset(asset);
-    repairWeights(asset);
-    startAtZero(asset);
-    return asset;
-  } catch (const Error& error) {
-    throwWithin(error, name);
-  } catch (const std::bad_alloc&) {
-    throw KnownError(ErrorKind::kOutOfMemory, {ErrorCode::kLimit, "does not fit in memory", std::string(name)});
-  }
+  return finished(name, [&] { return readAny(bytes, name, resolver); });
+}
+
+Asset readNumberedObj([[maybe_unused]] ByteSpan bytes, std::string_view name,
+                      [[maybe_unused]] const Resolver& resolver) {
+  return finished(name, [&]() -> Asset {
+#ifdef LIMBER_IMPORT
+    return importModel(bytes, name, resolver, ObjNumbers::kKept);
+#else
+    throw Error(ErrorCode::kUnsupported, "is an OBJ file, which limber does not read here");
+#endif
+  });
 }
 
 Asset readAsset(const fs::path& path) {

@@ -29,4 +29,9 @@ Asset readAsset(const std::filesystem::path& path);
 // of the file and of what it refers to.
 Asset readAsset(ByteSpan bytes, std::string_view name, const Resolver& resolver = {});
 
+// An OBJ file as readAsset reads it, but vertices that it numbers differently stay apart, and the last COLOR_n of each
+// primitive tells their numbers: (n % kObjNumberBase, n / kObjNumberBase, 0, 1) for n from 0. For what else the file
+// says of its vertices, see obj_vertices.h in pipeline.
+Asset readNumberedObj(ByteSpan bytes, std::string_view name, const Resolver& resolver = {});
+
 }  // namespace limber

@@ -106,7 +106,7 @@ ObjSeries readObjSeries(std::span<const fs::path> files, double framesPerSecond,
   }
   progress.update(0);
   const fs::path& file = files.front();
-  NumberedObj first = readNumberedObj(readFile(file), file.filename().string(), folderResolver(file.parent_path()));
+  ObjModel first = readObjModel(readFile(file), file.filename().string(), folderResolver(file.parent_path()));
   ObjSeries series{std::move(first.asset), {}};
   series.animation.pointOf = std::move(first.vertexOf);
   series.animation.clips = {{clipName(file), 0, static_cast<Index>(files.size()), framesPerSecond}};

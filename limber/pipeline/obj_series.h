@@ -22,7 +22,7 @@ struct ObjSeries {
 // Reads the first file as a model and of the others where their vertices are, told by their numbers: those of the first
 // stay apart where they touch. Its rest pose is the first frame; its points are the file's vertices. One clip, called
 // as the first file without the digits at its end.
-// Throws as readNumberedObj does, and Error kBadData, naming the file, where a frame has other faces or another number
+// Throws as readObjModel does, and Error kBadData, naming the file, where a frame has other faces or another number
 // of vertices than the first, where there is a single file, or nothing moves; kLimit for more than a VertexSequence
 // holds; kCancelled.
 ObjSeries readObjSeries(std::span<const std::filesystem::path> files, double framesPerSecond, Progress& progress);

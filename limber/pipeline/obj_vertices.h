@@ -12,7 +12,6 @@ namespace limber {
 
 struct ObjVertices {
   std::vector<Vec3f> positions;  // #V, of the "v" lines in their order
-  std::vector<Vec3f> colors;     // #V, none unless every "v" line has one
   std::vector<Index> corners;    // of the faces, one behind the other: vertices from 0, kNoIndex behind each face
 };
 
@@ -21,7 +20,7 @@ struct ObjVertices {
 // not there; kLimit beyond 2^32-2 vertices. Cost: one pass; memory within a few times the text.
 ObjVertices readObjVertices(ByteSpan bytes, std::string_view name);
 
-struct NumberedObj {
+struct ObjModel {
   Asset asset;
   ObjVertices vertices;
   std::vector<Index> vertexOf;  // #S vertices of collectGeometry(asset): their numbers in the file, from 0
@@ -29,6 +28,6 @@ struct NumberedObj {
 
 // The file as readAsset gives it, but that vertices with different numbers stay apart where they are at one place.
 // Throws as readObjVertices and readAsset do.
-NumberedObj readNumberedObj(ByteSpan bytes, std::string_view name, const Resolver& resolver);
+ObjModel readObjModel(ByteSpan bytes, std::string_view name, const Resolver& resolver);
 
 }  // namespace limber

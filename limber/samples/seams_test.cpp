@@ -237,7 +237,7 @@ TEST_P(Seams, AloneAreJoined) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Storages, Seams, ::testing::ValuesIn(storages()),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& storage) { return storage.param.name; });
 
 }  // namespace
 }  // namespace limber
