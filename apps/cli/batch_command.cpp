@@ -236,7 +236,7 @@ void runStatus(const BatchStatusArguments& arguments) {
   }
   const BatchStatus status = batchStatus(arguments.folder);
   printWarnings(status.recordWarnings, arguments.quiet);
-  if (!arguments.merged.empty()) writeText(arguments.merged, mergedBatchRecords(arguments.folder));
+  if (!arguments.merged.empty()) writeFile(arguments.merged, asBytes(mergedBatchRecords(arguments.folder)));
   if (arguments.json) {
     fmt::print("{}\n", dumpReport(toJson(status)));
   } else {

@@ -89,7 +89,7 @@ CLI::Validator seedNumber();
 CLI::Validator momentOfClip();
 
 // On standard output. Control characters in it, but for lines and tabs, are shown, not obeyed; so they are by
-// writeText.
+// writeText. Not for JSON, where they would no longer say what they are: dumpReport escapes them.
 void printText(std::string_view text);
 void writeText(const std::string& path, const std::string& text);
 // Two texts, both or none; the first only where `pathBeside` is not empty.

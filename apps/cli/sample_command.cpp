@@ -68,7 +68,7 @@ void writeMotion(const Motion& motion, const std::string& output) {
 
 // As it stands, or how it came about.
 void writeScene(std::string_view commands, const std::string& output, Progress& progress) {
-  if (lowerExtension(output) == ".json") return writeText(output, std::string(commands));
+  if (lowerExtension(output) == ".json") return writeFile(output, asBytes(commands));
   SessionScene scene;
   for (const Command& command : commandsFromJson(commands)) scene.run(command, progress);
   progress.stage("write");

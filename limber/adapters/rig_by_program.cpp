@@ -1,6 +1,5 @@
 #include "limber/adapters/rig_by_program.h"
 
-#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -9,11 +8,14 @@
 #include "limber/adapters/returned_rig.h"
 #include "limber/asset/geometry.h"
 #include "limber/asset/mesh_asset.h"
+#include "limber/asset/rest_pose.h"
 #include "limber/asset/rig_io.h"
 #include "limber/asset/write.h"
 #include "limber/core/known_error.h"
-#include "limber/mesh/components.h"
 #include "limber/mesh/prepare.h"
+#include "limber/pipeline/figure_geometry.h"
+#include "limber/pipeline/figure_to_rig.h"
+#include "limber/pipeline/left_out_weights.h"
 
 namespace limber {
 
@@ -36,23 +38,6 @@ void checkCanRig(const Asset& asset, const Adapter& adapter, const AutoRigOption
     throw Error(ErrorCode::kUnsupported, "the model has a rig of its own", asset.name,
                 "`existing-rig: replace` takes it out first");
   }
-}
-
-AutoRigReport reportOf(const Geometry& geometry, const PreparedMesh& prepared, const AutoRigOptions& options) {
-  AutoRigReport report;
-  report.skinning = options.skinning;
-  report.maxInfluences = options.weights.maxInfluences;
-  report.sourceVertices = static_cast<Index>(geometry.positions.size());
-  report.weldedVertices = prepared.mesh.vertexCount();
-  report.triangles = prepared.mesh.triangleCount();
-  std::vector<bool> isSolid;
-  Index pieces = 0;
-  const std::vector<Index> pieceOf = vertexComponents(prepared.mesh, &pieces);
-  isSolid.assign(pieces, false);
-  for (const Triangle& t : prepared.mesh.triangles) isSolid[pieceOf[t[0]]] = true;
-  report.pieces = static_cast<Index>(std::count(isSolid.begin(), isSolid.end(), true));
-  report.warnings.append(prepared.warnings);
-  return report;
 }
 
 Bytes inputFor(const HandedModel& handed, const Adapter& adapter) {
@@ -126,13 +111,10 @@ void renameJoints(SkinWeights& weights, const Skeleton& returned, const Skeleton
 AutoRigReport rigByProgram(Asset& asset, const Adapter& adapter, const AutoRigOptions& options, Progress& progress) {
   checkCanRig(asset, adapter, options);
   try {
-    progress.stage("read geometry");
+    AutoRigReport report;
     Asset rigged = asset.clone();
-    if (hasRig(rigged)) removeRig(rigged);
-    const Geometry geometry = collectGeometry(rigged);
-    progress.stage("weld");
-    const PreparedMesh prepared = prepareGeometry(geometry, geometry.triangles);
-    AutoRigReport report = reportOf(geometry, prepared, options);
+    const auto [geometry, figure, pieceOf] = readFigureToRig(rigged, options, report, progress);
+    const PreparedMesh& prepared = figure.prepared;
 
     progress.stage("rig");
     const HandedModel handed = handedModel(prepared.mesh, adapter);
@@ -152,14 +134,12 @@ AutoRigReport rigByProgram(Asset& asset, const Adapter& adapter, const AutoRigOp
       report.warnings.append(skin.warnings);
       rig.weights = std::move(skin.weights);
     }
+    bindLeftOut(figure, *rig.weights);
     progress.stage("write rig");
     attachRig(rigged, geometry, movedSkeleton(rig.skeleton, worldOf(prepared.frame)),
               expandWeights(*rig.weights, prepared.weldedVertex));
     asset = std::move(rigged);
-    progress.finish();
-    const Warnings stageWarnings = std::exchange(report.warnings, asset.warnings);
-    report.warnings.append(stageWarnings);
-    report.stages = progress.stages();
+    completeReport(asset, report, progress);
     return report;
   } catch (const Error& error) {
     throwWithin(error, asset.name);
@@ -173,20 +153,25 @@ Warnings weightsByProgram(Asset& asset, const Adapter& adapter, const WeightOpti
   }
   try {
     progress.stage("weights");
-    const AssetSkeleton own = readSkeleton(asset);
-    const Geometry geometry = collectGeometry(asset);
-    const PreparedMesh prepared = prepareGeometry(geometry, geometry.triangles);
+    Asset weighed = asset.clone();
+    joinBindPoses(weighed);
+    const AssetSkeleton own = readSkeleton(weighed);
+    const Geometry geometry = shapedGeometry(weighed);
+    const FigureSurface figure = figureOf(geometry, geometry.triangles);
+    const PreparedMesh& prepared = figure.prepared;
     const HandedModel handed = handedModel(prepared.mesh, adapter);
     const Skeleton working = movedSkeleton(own.skeleton, worldOf(prepared.frame).inverse());
     Asset given = meshAsset(handed.mesh);
     attachRig(given, collectGeometry(given), movedSkeleton(working, toHandedSpace(adapter.inputUp, adapter.inputSize)),
-              handedWeights(readWeights(asset, geometry, own), prepared, handed));
+              handedWeights(readWeights(weighed, geometry, own), prepared, handed));
     const Bytes input = writeGlb(given);
     const ProgramOutput output = runProgram(adapter, {input}, progress);
     ReturnedRig rig = readReturnedRig(output, adapter, prepared.mesh, handed, options.maxInfluences);
     if (!rig.weights) throw Error(ErrorCode::kBadData, "gave no weights", adapter.name);
     renameJoints(*rig.weights, rig.skeleton, working, adapter.name);
-    replaceWeights(asset, geometry, own, expandWeights(*rig.weights, prepared.weldedVertex));
+    bindLeftOut(figure, *rig.weights);
+    replaceWeights(weighed, geometry, own, expandWeights(*rig.weights, prepared.weldedVertex));
+    asset = std::move(weighed);
     return rig.warnings;
   } catch (const Error& error) {
     throwWithin(error, asset.name);

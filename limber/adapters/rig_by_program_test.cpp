@@ -11,7 +11,9 @@
 #include "limber/asset/accessor.h"
 #include "limber/asset/mesh_asset.h"
 #include "limber/asset/read.h"
+#include "limber/asset/testing/scene_builder.h"
 #include "limber/core/random.h"
+#include "limber/pipeline/testing/elsewhere_skin.h"
 #include "temporary_folder.h"
 #include "testing/fbx_text.h"
 #include "testing/made_body.h"
@@ -198,6 +200,93 @@ TEST_F(RigByProgram, VerticesWithoutALineTakeTheWeightsOfWhatIsNearest) {
   EXPECT_EQ(report.warnings.items()[0].kind, "unbound-vertices");
   EXPECT_EQ(report.warnings.items()[0].count, 10u);
   expectMadeRig(asset, madeWeights(madeBody()), 0.2);
+}
+
+// --- the surface that is handed over ---
+
+// The program knows nothing of the floor, whose vertices stand behind the body's.
+TEST_F(RigByProgram, AFloorIsNotHandedOverAndFollowsTheRoot) {
+  TriMesh mesh = madeBody();
+  const Index first = mesh.vertexCount();
+  for (const Vec3f& corner : {Vec3f(-3, -0.2f, -3), Vec3f(-3, -0.2f, 3), Vec3f(3, -0.2f, 3), Vec3f(3, -0.2f, -3)}) {
+    mesh.positions.push_back(corner);
+  }
+  mesh.triangles.push_back({first, first + 1, first + 2});
+  mesh.triangles.push_back({first, first + 2, first + 3});
+  Asset asset = meshAsset(mesh);
+  const SkinWeights made = madeWeights(madeBody());
+  const auto expectBound = [&] {
+    const AssetSkeleton read = readSkeleton(asset);
+    const SkinWeights weights = readWeights(asset, collectGeometry(asset), read);
+    const Index arm = *read.skeleton.find("arm"), hips = *read.skeleton.find("hips");
+    for (Index v = 0; v < first; ++v) {
+      EXPECT_NEAR(shareOf(weights, v, arm), shareOf(made, v, indexOf("arm")), 1e-5) << v;
+    }
+    for (Index v = first; v < mesh.vertexCount(); ++v) EXPECT_EQ(shareOf(weights, v, hips), 1) << v;
+  };
+  const AutoRigReport report =
+      rig(asset, copying(madeText(madeToHanded(shellAdapter("")), madeBody(), made), AdapterFormat::kRignetText));
+  EXPECT_EQ(report.pieces, 3u);
+  expectBound();
+
+  Adapter weigher = copying(madeGlb(madeBody(), made, madeToHanded(shellAdapter(""))), AdapterFormat::kGlb);
+  weigher.kind = AdapterKind::kWeights;
+  weigher.inputFormat = AdapterFormat::kGlb;
+  Progress progress;
+  weightsByProgram(asset, weigher, {}, progress);
+  expectBound();
+}
+
+// The file's vertices lie elsewhere than where the blend shape that is in use has them.
+TEST_F(RigByProgram, TheSurfaceIsHandedOverAsItsShapesHaveIt) {
+  TriMesh flat = madeBody();
+  std::vector<float> offsets;
+  for (Vec3f& p : flat.positions) {
+    offsets.insert(offsets.end(), {0, 0.5f * p.y(), 0});
+    p.y() *= 0.5f;
+  }
+  Asset asset = meshAsset(flat);
+  asset.document.meshes[0].primitives[0].targets.emplace_back().set(
+      "POSITION", addFloatAccessor(asset, offsets, 3, kVertexTarget, true));
+  asset.document.nodes[0].weights = {1};
+  Adapter adapter =
+      copying(madeGlb(madeBody(), madeWeights(madeBody()), madeToHanded(shellAdapter(""))), AdapterFormat::kGlb);
+  rig(asset, adapter);
+  adapter.kind = AdapterKind::kWeights;
+  adapter.inputFormat = AdapterFormat::kGlb;
+  Progress progress;
+  EXPECT_NO_THROW(weightsByProgram(asset, adapter, {}, progress));
+}
+
+TEST_F(RigByProgram, SkinsOfOtherPosesAreHandedOverInOne) {
+  testing::SceneBuilder scene;
+  std::vector<Index> nodes;
+  TriMesh parts[2];
+  testing::addCapsule(parts[0], Vec3(0, 0, 0), Vec3(0, 1.2, 0), 0.2);
+  testing::addCapsule(parts[0], Vec3(0, 0.1, 0.3), Vec3(0, 0.1, 0.6), 0.08);
+  testing::addCapsule(parts[1], Vec3(0.3, 1, 0), Vec3(1, 1, 0), 0.1);
+  SkinWeights held;
+  held.slots = 1;
+  for (const TriMesh& part : parts) {
+    const Json primitive = scene.primitive(part.positions, part.triangles);
+    nodes.push_back(scene.addNode({{"mesh", scene.addMesh(Json::array({primitive}))}}));
+    held.joints.insert(held.joints.end(), part.positions.size(), indexOf(nodes.size() == 1 ? "hips" : "arm"));
+  }
+  held.weights.assign(held.joints.size(), 1);
+  scene.asset().document.scene = scene.addScene(nodes);
+  Asset asset = scene.build();
+  const std::vector<Index> joints = attachRig(asset, collectGeometry(asset), testing::madeSkeleton(), held);
+  testing::bindElsewhere(asset, nodes[1], {joints[indexOf("arm")]}, Vec3f(0, 0, 4));
+  Adapter adapter =
+      copying(madeGlb(madeBody(), madeWeights(madeBody()), madeToHanded(shellAdapter(""))), AdapterFormat::kGlb);
+  AutoRigOptions options;
+  options.existingRig = ExistingRig::kReplace;
+  Asset anew = asset.clone();
+  EXPECT_NO_THROW(rig(anew, adapter, options));
+  adapter.kind = AdapterKind::kWeights;
+  adapter.inputFormat = AdapterFormat::kGlb;
+  Progress progress;
+  EXPECT_NO_THROW(weightsByProgram(asset, adapter, {}, progress));
 }
 
 TEST_F(RigByProgram, GarbageIsALineOfText) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -40,6 +41,23 @@ void resolvePointer(const gltf::Document& document, gltf::AnimationChannel& chan
   eraseExtension(channel.target, kPointerName);
   channel.target.node = named.node;
   channel.target.path = named.path;
+}
+
+// True if one went. Samplers that no channel names any more stay: those that are left may name some that are not there.
+bool dropLostPointers(gltf::Document& document, Warnings& warnings) {
+  bool any = false;
+  const auto isLost = [&](const gltf::AnimationChannel& channel) {
+    const std::optional<Index> node = channelTarget(channel).node;
+    return animationPointer(channel.target) != nullptr && node && *node >= document.nodes.size();
+  };
+  std::erase_if(document.animations, [&](gltf::Animation& animation) {
+    const std::size_t dropped = std::erase_if(animation.channels, isLost);
+    warnings.add("missing-targets", "animation channels of nodes that are not there are left out", animation.name,
+                 dropped);
+    any = any || dropped > 0;
+    return dropped > 0 && animation.channels.empty();
+  });
+  return any;
 }
 
 // Moves the keys of animations.
@@ -91,8 +109,8 @@ class KeyShifter {
 
 }  // namespace
 
-void resolveNodePointers(gltf::Document& document) {
-  bool had = false, has = false;
+void resolveNodePointers(gltf::Document& document, Warnings& warnings) {
+  bool had = dropLostPointers(document, warnings), has = false;
   for (gltf::Animation& animation : document.animations) {
     Targets taken = plainTargets(animation);
     for (gltf::AnimationChannel& channel : animation.channels) {

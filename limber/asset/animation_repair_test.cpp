@@ -8,6 +8,7 @@
 #include "limber/asset/extensions.h"
 #include "limber/asset/read.h"
 #include "limber/asset/testing/gltf_builder.h"
+#include "warning_kinds.h"
 
 namespace limber {
 namespace {
@@ -52,7 +53,16 @@ TEST(AnimationRepair, OtherPointersStay) {
 
   testing::GltfBuilder missing = testing::everythingModel();
   missing.json["animations"][0]["channels"][0]["target"] = pointerAt("/nodes/99/rotation");
-  EXPECT_THROW(readAsset(missing.glb(), "pointers.glb"), Error);
+  missing.json["extensionsUsed"] = {kPointerName};
+  Json both = missing.json["animations"][0];
+  both["channels"].push_back({{"sampler", 0}, {"target", {{"node", 1}, {"path", "rotation"}}}});
+  missing.push("animations", both);
+  const Asset found = readAsset(missing.glb(), "pointers.glb");
+  ASSERT_EQ(found.document.animations.size(), 1u) << "the first is empty";
+  ASSERT_EQ(found.document.animations[0].channels.size(), 1u);
+  EXPECT_EQ(found.document.animations[0].channels[0].target.node, 1u);
+  EXPECT_THAT(found.document.extensionsUsed, ElementsAre());
+  EXPECT_EQ(testing::countOf(found.warnings, "missing-targets"), 2u);
 }
 
 TEST(AnimationRepair, KeysBeforeZeroAreMovedWithAllOfTheirClip) {

@@ -99,6 +99,7 @@ class DataChecker {
              fmt::format("has {} elements, but {} buffers are in memory", buffers.size(), asset_.buffers.size()));
     }
     for (std::size_t i = 0; i < buffers.size(); ++i) {
+      stored_ += buffers[i].byteLength;
       if (buffers[i].byteLength == asset_.buffers[i].bytes.size()) continue;
       failAt(fmt::format("buffers[{}]", i), "has not as many bytes as its byteLength");
     }
@@ -123,13 +124,11 @@ class DataChecker {
       throw Error(ErrorCode::kLimit, fmt::format("has {} sets of weights, more than {}", sets, kMaxInfluenceSets),
                   where + ".attributes", "bind vertices to fewer joints");
     }
-    std::uint64_t stored = 0;
-    for (const gltf::Buffer& buffer : document_.buffers) stored += buffer.byteLength;
-    if (unpacked_ <= kMaxUnpackedOfAny + kMaxUnpackedPerByte * stored) return;
+    if (unpacked_ <= kMaxUnpackedOfAny + kMaxUnpackedPerByte * stored_) return;
     throw Error(
         ErrorCode::kLimit,
         fmt::format("comes to more than {} MB of vertices and blend shapes, which {} bytes of buffers do not explain",
-                    unpacked_ >> 20, stored),
+                    unpacked_ >> 20, stored_),
         where, "take blend shapes out, or do its meshes one by one");
   }
 
@@ -310,6 +309,7 @@ class DataChecker {
   const Asset& asset_;
   const gltf::Document& document_;
   std::vector<AccessorLayout> layouts_;                       // #accessors
+  std::uint64_t stored_ = 0;                                  // bytes, of all buffers
   std::uint64_t unpacked_ = 0;                                // bytes, of the primitives so far
   std::vector<bool> finite_;                                  // #accessors: checked and found so
   std::vector<std::optional<Index>> largest_;                 // #accessors, where it was asked for

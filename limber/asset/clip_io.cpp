@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstring>
 #include <map>
+#include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
@@ -141,7 +142,13 @@ class ClipReader {
       readChannel(animation.samplers[channel.sampler], channel.target.path, *channel.target.node);
     }
     for (auto& [node, tracks] : nodes_) tracks.turnMirror(asset_.document.nodes[node]);
-    for (Index j = 0; j < skeleton_.skeleton.jointCount(); ++j) addJoint(j, clip);
+    std::vector<std::vector<float>> times(skeleton_.skeleton.jointCount());  // of those that are sampled
+    for (Index j = 0; j < times.size(); ++j) {
+      if (!isSampled(j)) continue;
+      times[j] = sampleTimes(skeleton_.jointNode[j]);
+      countSamples(times[j].size());
+    }
+    for (Index j = 0; j < times.size(); ++j) addJoint(j, std::move(times[j]), clip);
     return clip;
   }
 
@@ -189,17 +196,21 @@ class ClipReader {
     return track.times.empty() ? std::nullopt : std::optional(std::move(track));
   }
 
-  void addJoint(Index j, Clip& clip) {
+  bool isSampled(Index j) const {
+    const Index node = skeleton_.jointNode[j];
+    if (skeleton_.skeleton.joints[j].parent) return false;
+    return movesAbove(node) || (nodes_.count(node) > 0 && !isSimilarity(frameAbove(graph_, node)));
+  }
+
+  // `times`: when it is sampled, if it is.
+  void addJoint(Index j, std::vector<float> times, Clip& clip) {
     const Index node = skeleton_.jointNode[j];
     NodeTracks tracks;
     if (const auto known = nodes_.find(node); known != nodes_.end()) tracks = known->second;
-    if (!skeleton_.skeleton.joints[j].parent) {
-      const Affine above = frameAbove(graph_, node);
-      if (movesAbove(node) || (tracks.any() && !isSimilarity(above))) {
-        tracks = sampled(node);
-      } else if (tracks.any()) {
-        premultiply(above, tracks);
-      }
+    if (!times.empty()) {
+      tracks = sampled(node, std::move(times));
+    } else if (!skeleton_.skeleton.joints[j].parent && tracks.any()) {
+      premultiply(frameAbove(graph_, node), tracks);
     }
     keepStanding(j, tracks);
     if (tracks.translation) store(clip.translations, j, std::move(*tracks.translation));
@@ -220,15 +231,20 @@ class ClipReader {
     return false;
   }
 
-  // The node's movement in the world, at every key of it and of the nodes above it, and between.
-  NodeTracks sampled(Index node) {
-    std::vector<Index> chain;
+  // Every key of the node and of the nodes above it, and between.
+  std::vector<float> sampleTimes(Index node) const {
     std::vector<float> times;
     for (std::optional<Index> n = node; n; n = graph_.parent[*n]) {
-      chain.push_back(*n);
       if (const auto known = nodes_.find(*n); known != nodes_.end()) known->second.addTimes(times);
     }
     addTimesBetween(times);
+    return times;
+  }
+
+  // The node's movement in the world.
+  NodeTracks sampled(Index node, std::vector<float> times) {
+    std::vector<Index> chain;
+    for (std::optional<Index> n = node; n; n = graph_.parent[*n]) chain.push_back(*n);
     warnings_.add("moving-parents",
                   "root joints have nodes above them that move or are stretched: sampled 60 times a second",
                   skeleton_.skeleton.joints[0].name);
@@ -264,6 +280,16 @@ class ClipReader {
     sortUnique(times);
   }
 
+  // Of all clips: a few kilobytes of nodes and keys must not ask for gigabytes.
+  void countSamples(std::size_t added) {
+    constexpr std::size_t kMostSamples = 8'000'000;
+    samples_ += added;
+    if (samples_ > kMostSamples) {
+      throw Error(ErrorCode::kLimit, "has clips too long for all that hangs on nodes that they move", {},
+                  "shorten them, or let their nodes stand still");
+    }
+  }
+
   // A part that no channel moves stays where the node has it, which may be off the rest pose.
   void keepStanding(Index j, NodeTracks& tracks) const {
     const Transform &stands = nodePose_.locals[j], &rest = skeleton_.skeleton.joints[j].rest;
@@ -287,6 +313,7 @@ class ClipReader {
   Pose nodePose_;
   Box box_;
   std::map<Index, NodeTracks> nodes_;  // of the animation being read
+  std::size_t samples_ = 0;            // of all that were read
 };
 
 // Accessors that share a buffer view, which is made when all are there.
@@ -520,10 +547,17 @@ class ClipWriter {
 }  // namespace
 
 std::vector<Clip> readClips(const Asset& asset, const AssetSkeleton& skeleton, Warnings& warnings) {
+  std::vector<Index> all(asset.document.animations.size());
+  std::iota(all.begin(), all.end(), Index{0});
+  return readClips(asset, skeleton, all, warnings);
+}
+
+std::vector<Clip> readClips(const Asset& asset, const AssetSkeleton& skeleton, std::span<const Index> animations,
+                            Warnings& warnings) {
   ClipReader reader(asset, skeleton, warnings);
   std::vector<Clip> clips;
-  for (const gltf::Animation& animation : asset.document.animations) {
-    clips.push_back(reader.read(animation));
+  for (const Index animation : animations) {
+    clips.push_back(reader.read(asset.document.animations[animation]));
     checkClip(clips.back(), skeleton.skeleton);
   }
   return clips;

@@ -18,8 +18,12 @@ namespace limber {
 // second between (warning "moving-parents"). Keys that are not finite or not later than the one before, and rotations
 // of length 0, are left out (warning "invalid-keys"). Morph weights and movement of other nodes are not part of a clip.
 // Where a node's scale mirrors, tracks have rotations and scales as decompose() finds them, which the rest pose has,
-// too.
+// too. Throws Error kLimit where joints below moving nodes would have more than 8 million samples together.
 std::vector<Clip> readClips(const Asset& asset, const AssetSkeleton& skeleton, Warnings& warnings);
+
+// The same of the animations with these numbers alone, in their order.
+std::vector<Clip> readClips(const Asset& asset, const AssetSkeleton& skeleton, std::span<const Index> animations,
+                            Warnings& warnings);
 
 struct ClipWriteOptions {
   // Fewer bytes: the numbers of a clip share a buffer view, and rotations whose values are all 16-bit fractions

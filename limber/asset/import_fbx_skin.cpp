@@ -223,9 +223,11 @@ FbxShapes readFbxShapes(const FbxObjects& objects, Index geometry, FbxBudget& bu
       if (!std::isfinite(channel.percent)) channel.percent = 0;
       const std::vector<double> full = fbxNumbers(node, "FullWeights");
       const std::vector<Index> shapes = objects.sources(object, "Geometry");
-      // Of a channel of one shape, Blender writes its vertex group here: a number for each of the shape's points.
+      // Of a channel of one shape, Blender writes its vertex group here: a number for each of the shape's points. One
+      // number alone is where the shape is reached; in a group of one point that is in full (100) it says the same.
       const bool areOfPoints =
-          shapes.size() == 1 && full.size() == fbxIntegers(*objects[shapes[0]].node, "Indexes").size() &&
+          shapes.size() == 1 && full.size() > 1 &&
+          full.size() == fbxIntegers(*objects[shapes[0]].node, "Indexes").size() &&
           std::all_of(full.begin(), full.end(), [](double percent) { return std::isfinite(percent); });
       std::vector<std::pair<double, Index>> order;
       for (std::size_t s = 0; s < shapes.size(); ++s) {

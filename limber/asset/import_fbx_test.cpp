@@ -512,6 +512,15 @@ TEST(ImportFbx7, FullWeightsOfAShapesPointsAreWhatTheyMoveBy) {
   EXPECT_EQ(moves, (std::vector<float>{0, 0.5f, 0, 0, 0.25f, 0, 0, 0, 0}));
 }
 
+TEST(ImportFbx7, OneFullWeightIsWhereAShapeOfOnePointIsReached) {
+  const Asset asset = importChannel({{1}}, 25, {50});
+  const gltf::Mesh& mesh = asset.document.meshes.at(0);
+  EXPECT_EQ(mesh.weights, std::vector<double>{0.5});
+  const std::vector<float> moves = readFloats(asset, *mesh.primitives.at(0).targets.at(0).find("POSITION"));
+  EXPECT_EQ(moves, (std::vector<float>{0, 0, 0, 0, 1, 0, 0, 0, 0}));
+  EXPECT_EQ(importChannel({{1}}, 25, {100}).document.meshes.at(0).weights, std::vector<double>{0.25});
+}
+
 TEST(ImportFbx7, TheBareMeshLiesBetweenInBetweensBelowZeroAndAbove) {
   const auto weights = [](double percent) {
     return importChannel({{0, 1}, {1, 2}, {0, 1, 2}}, percent, {-50, 50, 100}).document.meshes.at(0).weights;

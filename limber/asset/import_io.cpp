@@ -1,5 +1,7 @@
 #include "limber/asset/import_io.h"
 
+#include <algorithm>
+
 #include <assimp/MemoryIOWrapper.h>
 
 #include "limber/asset/import_obj.h"
@@ -10,7 +12,7 @@ namespace limber {
 
 std::optional<Bytes> ImportIo::sideFile(std::string_view path) const {
   for (const std::string& folder : materialFolders_) {
-    if (std::optional<Bytes> bytes = limber::sideFile(resolver_, folder + std::string(path))) return bytes;
+    if (std::optional<Bytes> bytes = sideFileThere(resolver_, folder + std::string(path))) return bytes;
   }
   return limber::sideFile(resolver_, path);
 }
@@ -32,7 +34,9 @@ Assimp::IOStream* ImportIo::Open(const char* path, const char*) {
     movedTextures_ += countMovedMtlTextures(*bytes);
     const std::string place(path);
     const std::size_t slash = place.find_last_of("/\\");
-    if (slash != place.npos) materialFolders_.push_back(place.substr(0, slash + 1));
+    const std::string folder = slash == place.npos ? "" : place.substr(0, slash + 1);
+    const bool isKnown = std::find(materialFolders_.begin(), materialFolders_.end(), folder) != materialFolders_.end();
+    if (!folder.empty() && !isKnown) materialFolders_.push_back(folder);
   }
   return bytes ? new Assimp::MemoryIOStream(bytes->data(), bytes->size()) : nullptr;
 }

@@ -24,7 +24,7 @@ class ImportIo : public Assimp::IOSystem {
   void Close(Assimp::IOStream* stream) override;
 
   // A side file by the path that the model or its materials give: as it is if that is relative, beside the materials'
-  // file first; else by its last part.
+  // file first, then beside the model; else by its last part beside the model.
   std::optional<Bytes> sideFile(std::string_view path) const;
 
   // Textures of the materials' files that were opened which do not lie as they are.
@@ -36,7 +36,7 @@ class ImportIo : public Assimp::IOSystem {
   ByteSpan mainFile_;
   std::string mainName_;
   const Resolver& resolver_;
-  std::vector<std::string> materialFolders_;  // of the MTL files that were opened; they end with a slash
+  std::vector<std::string> materialFolders_;  // of the MTL files that were opened; each once; they end with a slash
   std::size_t movedTextures_ = 0;
   mutable std::map<std::string, std::optional<Bytes>> sideFiles_;
 };

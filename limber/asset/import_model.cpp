@@ -163,9 +163,9 @@ void restoreObjColors(aiScene& scene, const ObjText& obj, ObjNumbers numbers) {
     if (!obj.colors.empty()) {
       aiColor4D* const colors = mesh.mColors[sets++] = new aiColor4D[mesh.mNumVertices];
       for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
-        const aiColor4D& n = numbered[v];
-        const std::array<float, 4>& c =
-            obj.colors.at(static_cast<std::size_t>(n.r) + kObjNumberBase * static_cast<std::size_t>(n.g));
+        const std::optional<std::size_t> number = objNumber(numbered[v].r, numbered[v].g, obj.colors.size());
+        if (!number) throw Error(ErrorCode::kBadData, "its vertices are not found again after reading");
+        const std::array<float, 4>& c = obj.colors[*number];
         colors[v] = aiColor4D(c[0], c[1], c[2], c[3]);
       }
     }

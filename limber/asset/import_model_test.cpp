@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "limber/asset/accessor.h"
+#include "limber/asset/images.h"
 #include "limber/asset/import_dae.h"
 #include "limber/asset/import_obj.h"
 #include "limber/asset/rig_io.h"
@@ -257,6 +258,53 @@ TEST(ImportObj, PicturesLieBesideTheMaterials) {
   EXPECT_EQ(warningKinds(asset.warnings), std::vector<std::string>{"texture-transforms"});
 }
 
+TEST(ImportObj, APictureWhereTheObjHasItComesBeforeOneOfThatNameAlone) {
+  const std::string magic("\x89PNG\r\n\x1a\n", 8);
+  const Asset asset = import("mtllib looks/t.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n", "t.obj",
+                             folder({{"looks/t.mtl", "newmtl red\nmap_Kd pictures/skin.png\n"},
+                                     {"skin.png", magic + "another"},
+                                     {"pictures/skin.png", magic + "right"}}));
+  ASSERT_EQ(asset.document.images.size(), 1u);
+  const Bytes bytes = imageBytes(asset, 0).value();
+  EXPECT_EQ(std::string(bytes.begin() + 8, bytes.end()), "right");
+}
+
+TEST(ImportObj, FormFeedsAndZerosEndLines) {
+  const std::string text("v 0 0 0\fv 1 0 0\0v 0 1 0\nf 1 2 3\0f 3 2 1", 39);
+  std::size_t lines = 0;
+  forEachObjLine(asBytes(text), [&](std::string_view) { ++lines; });
+  EXPECT_EQ(lines, 5u);
+  const Asset asset = import(text, "t.obj");
+  EXPECT_EQ(collectGeometry(asset).triangles.size(), 2u);
+  EXPECT_TRUE(asset.warnings.empty());
+}
+
+TEST(ImportObj, VerticesAtInfinityAreRefused) {
+  EXPECT_THAT(errorOf("v 0 0 0\nv 1 0 0\nv 0 1 0 0\nf 1 2 3\n", "t.obj").what(),
+              HasSubstr("a vertex has a position that is not"));
+}
+
+TEST(ImportObj, NumbersOfVerticesAreWhole) {
+  const Asset asset = import("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1.5 2 3\nf +1 2 3\n", "t.obj");
+  EXPECT_EQ(testing::countOf(asset.warnings, "invalid-faces"), 1u);
+}
+
+// Of a word of 4096 letters Assimp takes the rest for the next number.
+TEST(ImportObj, VerticesThatAssimpReadsOtherwiseAreRefused) {
+  const std::string zero = "0." + std::string(5000, '0');
+  const Error error = errorOf("v " + zero + " 0 -0.5 1 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "t.obj");
+  EXPECT_EQ(error.code(), ErrorCode::kBadData);
+  EXPECT_THAT(error.what(), HasSubstr("not found again"));
+}
+
+TEST(ImportObj, ColorsThatNameNoVertexAreNone) {
+  const float none = std::nanf("");
+  EXPECT_EQ(objNumber(2, 1, 70000), kObjNumberBase + 2);
+  for (const auto& [red, green] : {std::pair{-1.0f, 0.0f}, {0.0f, -1.0f}, {none, 0.0f}, {0.0f, none}, {5.0f, 0.0f}}) {
+    EXPECT_FALSE(objNumber(red, green, 5)) << red << " " << green;
+  }
+}
+
 TEST(ImportObj, TexturesThatAreMovedAreCounted) {
   EXPECT_EQ(countMovedMtlTextures(asBytes("map_Kd -o 1 0 0 a.png\nmap_Kd -s 1 1 1 -o 0 0 0 -bm 2 a.png\nKd 1 1 1\n")),
             1u);
@@ -273,8 +321,7 @@ TEST(ImportObj, LooseVerticesAreCounted) {
 
 TEST(ImportObj, CornersMayCountBackwards) {
   const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvn 0 0 1\n";
-  const std::vector<float> uvs =
-      attributeOf(import(square + "f 1/1/1 2/2/1 3/3/1 4/4/1\n", "t.obj"), "TEXCOORD_0");
+  const std::vector<float> uvs = attributeOf(import(square + "f 1/1/1 2/2/1 3/3/1 4/4/1\n", "t.obj"), "TEXCOORD_0");
   for (const char* face : {"f -4/-4/-1 -3/-3/-1 -2/-2/-1 -1/-1/-1\n", "f -4/1/1 2/-3/-1 -2/3/1 4/-1/1 # all of it\n",
                            "f 1/1/1 \\\n2/2/1 3/3/1\\\r\n 4/4/1#all of it\n"}) {
     const Asset asset = import(square + face, "t.obj");

@@ -11,27 +11,10 @@
 
 #include "limber/asset/obj_lines.h"
 #include "limber/core/error.h"
-#include "limber/core/parse_number.h"
 
 namespace limber {
 
 namespace {
-
-// The number at the front of "12/3/4" or "-1", which is taken off; 0, which OBJ never uses, where there is none.
-std::int64_t takeNumber(std::string_view& word) {
-  const bool negative = word.starts_with('-');
-  if (negative) word.remove_prefix(1);
-  std::int64_t number = 0;
-  for (; !word.empty() && word.front() >= '0' && word.front() <= '9'; word.remove_prefix(1)) {
-    if (number <= (std::int64_t{1} << 40)) number = 10 * number + (word.front() - '0');
-  }
-  return negative ? -number : number;
-}
-
-std::optional<double> numberOf(std::string_view word) {
-  const char* at = word.data();
-  return parseNumber(at, word.data() + word.size());
-}
 
 // Vertices, texture coordinates and normals, as a corner names them.
 using Counts = std::array<std::int64_t, 3>;
@@ -100,7 +83,7 @@ class ObjPreparer {
         word.remove_prefix(1);
       }
       if (part > 0 && (word.empty() || word.front() == '/')) continue;  // "1//2", "1/"
-      const std::int64_t number = takeNumber(word);
+      const std::int64_t number = takeObjNumber(word);
       if (number == 0) return false;
       const std::int64_t at = number < 0 ? seen_[part] + number : number - 1;
       const bool isAsked = part == 0 || total_[part] > 0;
@@ -111,25 +94,21 @@ class ObjPreparer {
     return true;
   }
 
-  // "x y z [w] [r g b [a]]"
   void addVertex(std::string_view line) {
-    std::array<std::string_view, 7> words;
-    std::size_t count = 0;
-    for (std::string_view word = nextObjWord(line); !word.empty() && count < words.size(); word = nextObjWord(line)) {
-      words[count++] = word;
-    }
+    const ObjVertexWords vertex(line);
+    const auto& [words, count] = vertex;
     constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
     std::array<float, 4> color = {kNone, kNone, kNone, kNone};
     for (std::size_t c = 0; count >= 6 && c < 4; ++c) {
-      const std::optional<double> value = c + 3 < count ? numberOf(words[c + 3]) : 1;
+      const std::optional<double> value = c + 3 < count ? objNumberOf(words[c + 3]) : 1;
       if (value) color[c] = static_cast<float>(*value);
     }
     hasColors_ = hasColors_ || count >= 6;
     result_.text += 'v';
-    const double w = count == 4 ? numberOf(words[3]).value_or(1) : 1;
+    const double w = vertex.w();
     for (std::size_t i = 0; i < 3 && i < count; ++i) {
       result_.text += ' ';
-      const std::optional<double> value = w != 1 && w != 0 ? numberOf(words[i]) : std::nullopt;
+      const std::optional<double> value = w != 1 ? objNumberOf(words[i]) : std::nullopt;
       result_.text += value ? fmt::format("{}", *value / w) : std::string(words[i]);
     }
     const std::size_t number = result_.colors.size();
@@ -162,11 +141,11 @@ std::size_t countMovedMtlTextures(ByteSpan bytes) {
     double usual = 0;
     bool isOption = false, isMoved = false;
     for (std::string_view word = nextObjWord(line); !word.empty(); word = nextObjWord(line)) {
-      if (word.front() == '-' && !numberOf(word)) {
+      if (word.front() == '-' && !objNumberOf(word)) {
         isOption = word == "-s" || word == "-o" || word == "-t";
         usual = word == "-s" ? 1 : 0;
       } else if (isOption) {
-        const std::optional<double> value = numberOf(word);
+        const std::optional<double> value = objNumberOf(word);
         isOption = value.has_value();
         isMoved = isMoved || (value && *value != usual);
       }

@@ -167,7 +167,20 @@ std::string dumpJson(const Json& json, int indent) {
 }
 
 std::string dumpReport(const Json& json, int indent) {
-  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+  std::string text = json.dump(indent, ' ', false, Json::error_handler_t::replace);
+  const auto isControl = [](std::string_view at) {  // beyond those that JSON escapes anyway
+    return at[0] == '\x7f' || (at.size() > 1 && at[0] == '\xc2' && at[1] >= '\x80' && at[1] <= '\x9f');
+  };
+  std::string plain;
+  std::size_t done = 0;
+  for (std::size_t i = text.find_first_of("\x7f\xc2"); i < text.size(); i = text.find_first_of("\x7f\xc2", i + 1)) {
+    if (!isControl(std::string_view(text).substr(i))) continue;
+    plain.append(text, done, i - done);
+    const bool isDelete = text[i] == '\x7f';
+    plain += fmt::format("\\u{:04x}", static_cast<unsigned char>(text[isDelete ? i : i + 1]));
+    done = i + (isDelete ? 1 : 2);
+  }
+  return done == 0 ? text : plain.append(text, done);
 }
 
 Json toJson(const Warnings& warnings) {

@@ -17,7 +17,8 @@ Json parseJson(std::string_view text, Warnings& warnings);
 // indent < 0: no white space. Throws Error kBadData where a string is not UTF-8.
 std::string dumpJson(const Json& json, int indent);
 
-// For what limber says itself: what is not UTF-8 in a name out of a file or of a file is replaced.
+// For what limber says itself: what is not UTF-8 in a name out of a file or of a file is replaced, and what a terminal
+// would obey (control characters, U+007F to U+009F too) is escaped, so that the text is JSON as it is shown.
 std::string dumpReport(const Json& json, int indent = 2);
 
 // [{"kind", "message", "where", "count"}], in order.

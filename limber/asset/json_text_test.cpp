@@ -84,5 +84,13 @@ TEST(JsonText, RefusesToWriteWhatIsNotUtf8) {
   }
 }
 
+TEST(JsonText, ReportsHoldNoControlCharacters) {
+  const Json json = {{"a\x7f", "\x1b\xc2\x80 \xc2\x9f\xc2\xa0 \xc3\x82\x7f"}};
+  const std::string text = dumpReport(json, -1);
+  EXPECT_EQ(text, "{\"a\\u007f\":\"\\u001b\\u0080 \\u009f\xc2\xa0 \xc3\x82\\u007f\"}");
+  EXPECT_EQ(Json::parse(text), json);
+  EXPECT_EQ(dumpReport(Json{{"a", "\xc3\xa4"}}, -1), "{\"a\":\"\xc3\xa4\"}");
+}
+
 }  // namespace
 }  // namespace limber

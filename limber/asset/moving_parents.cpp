@@ -8,6 +8,7 @@
 #include "limber/asset/accessor_sweep.h"
 #include "limber/asset/clip_io.h"
 #include "limber/asset/compact_buffers.h"
+#include "limber/asset/extensions.h"
 #include "limber/asset/node_edit.h"
 #include "limber/asset/scene_graph.h"
 #include "limber/asset/unique_names.h"
@@ -15,6 +16,8 @@
 namespace limber {
 
 namespace {
+
+constexpr const char* kLightName = "KHR_lights_punctual";
 
 bool isTransform(std::string_view path) {
   return path == "translation" || path == "rotation" || path == "scale";
@@ -41,10 +44,11 @@ class ParentSettler {
     const AccessorSweep accessors(asset_);
     const BufferViewSweep views(asset_);
     const AssetSkeleton carried = carriedNodes();
-    std::vector<Clip> clips;
-    {
-      std::vector<Clip> all = readClips(asset_, carried, asset_.warnings);
-      for (const Index a : moving) clips.push_back(std::move(all[a]));
+    Warnings told;  // of keys that are none by whoever reads the skeleton's own clips
+    const std::vector<Clip> clips = readClips(asset_, carried, moving, told);
+    for (const Warning& warning : told.items()) {
+      if (warning.kind != "moving-parents") continue;
+      asset_.warnings.add(warning.kind, warning.message, warning.where, warning.count);
     }
     std::vector<bool> isReplaced = moves_;
     for (const Index node : carried.jointNode) isReplaced[node] = true;
@@ -81,8 +85,11 @@ class ParentSettler {
       const bool hangs = parent && isMoved[*parent];
       if (above_[n]) {
         isMoved[n] = isMoved[n] || hangs;
-        if (isMoved[n] && node.mesh && !node.skin) {
-          asset_.warnings.add("still-parents", "meshes on nodes above root joints stand still: the joints move alone",
+        const bool isSeen = (node.mesh && !node.skin) || node.camera || extensionOf(node, kLightName) != nullptr;
+        if (isMoved[n] && isSeen) {
+          asset_.warnings.add("still-parents",
+                              "meshes, cameras and lights on nodes above root joints stand still: the joints move "
+                              "alone",
                               node.name);
         }
         continue;

@@ -9,6 +9,7 @@
 #include "limber/asset/replace_clips.h"
 #include "limber/asset/testing/gltf_builder.h"
 #include "limber/asset/write.h"
+#include "warning_kinds.h"
 
 namespace limber {
 namespace {
@@ -97,6 +98,44 @@ TEST(MovingParents, AMeshOnSuchANodeIsTold) {
   std::vector<std::string> kinds;
   for (const Warning& warning : asset.warnings.items()) kinds.push_back(warning.kind);
   EXPECT_THAT(kinds, ::testing::UnorderedElementsAre("still-parents", "moving-parents"));
+}
+
+TEST(MovingParents, ACameraOrALightOnSuchANodeIsTold) {
+  Asset camera = movingArmature();
+  camera.document.nodes[5].camera = 0;
+  settleMovingParents(camera, readSkeleton(camera));
+  EXPECT_EQ(testing::countOf(camera.warnings, "still-parents"), 1u);
+  Asset light = movingArmature();
+  light.document.nodes[5].extensions = gltf::KeptJson(Json{{"KHR_lights_punctual", {{"light", 0}}}});
+  settleMovingParents(light, readSkeleton(light));
+  EXPECT_EQ(testing::countOf(light.warnings, "still-parents"), 1u);
+}
+
+TEST(MovingParents, LongClipsOfManyNodesAreRefusedBeforeTheyAreSampled) {
+  Asset asset = movingArmature();
+  const Index times = addFloatAccessor(asset, std::vector<float>{0, 15000}, 1);  // 900 000 samples
+  asset.document.animations[0].samplers[1].input = times;
+  for (int i = 0; i < 20; ++i) {
+    gltf::Node prop;
+    prop.camera = 0;
+    asset.document.nodes[5].children.push_back(addElement(asset.document.nodes, std::move(prop)));
+  }
+  try {
+    settleMovingParents(asset, readSkeleton(asset));
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::kLimit);
+  }
+}
+
+TEST(MovingParents, OnlyTheAnimationsAtHandAreRead) {
+  Asset asset = movingArmature();
+  gltf::Animation other = asset.document.animations[0];
+  other.samplers[0].input = other.samplers[1].input = addFloatAccessor(asset, std::vector<float>{1, 0}, 1);
+  asset.document.animations.push_back(std::move(other));
+  const std::vector<Index> first = {0};
+  settleMovingParents(asset, readSkeleton(asset), first);
+  EXPECT_EQ(testing::warningKinds(asset.warnings), std::vector<std::string>{"moving-parents"});
 }
 
 }  // namespace

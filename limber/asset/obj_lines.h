@@ -2,16 +2,27 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "limber/core/file.h"
+#include "limber/core/parse_number.h"
 
 namespace limber {
 
 // A vertex' number as two of a colour's digits, which both are exact in single precision.
 inline constexpr std::size_t kObjNumberBase = 65536;
+
+// The number that such a colour says, of `count` vertices; none where it says none of theirs.
+inline std::optional<std::size_t> objNumber(float red, float green, std::size_t count) {
+  const double number = double{red} + double{kObjNumberBase} * green;
+  if (!(number >= 0 && number < static_cast<double>(count))) return std::nullopt;  // NaN neither
+  return static_cast<std::size_t>(number);
+}
 
 // Takes the next word off the front of a line; empty at its end or at a comment.
 inline std::string_view nextObjWord(std::string_view& line) {
@@ -27,12 +38,47 @@ inline bool isObjElement(std::string_view kind) {
   return kind == "v" || kind == "vt" || kind == "vn" || kind == "f" || kind == "l" || kind == "p";
 }
 
-// Calls `visit(line)` for each line; the parts of an element that '\\' continues are one.
+inline std::optional<double> objNumberOf(std::string_view word) {
+  const char* at = word.data();
+  return parseNumber(at, word.data() + word.size());
+}
+
+// What stands behind "v": "x y z", "x y z w" or "x y z r g b [a]".
+struct ObjVertexWords {
+  std::array<std::string_view, 7> words;
+  std::size_t count = 0;
+
+  explicit ObjVertexWords(std::string_view line) {
+    for (std::string_view word = nextObjWord(line); !word.empty() && count < words.size(); word = nextObjWord(line)) {
+      words[count++] = word;
+    }
+  }
+
+  // What x, y and z are divided by; with 0 they are no place.
+  double w() const { return count == 4 ? objNumberOf(words[3]).value_or(1) : 1; }
+};
+
+// The number at the front of a corner ("12/3/4", "-1"), which is taken off. 0, which OBJ never uses, where there is
+// none or it does not end there ("1.5").
+inline std::int64_t takeObjNumber(std::string_view& word) {
+  const bool isNegative = word.starts_with('-');
+  if (isNegative || word.starts_with('+')) word.remove_prefix(1);
+  std::int64_t number = 0;
+  for (; !word.empty() && word.front() >= '0' && word.front() <= '9'; word.remove_prefix(1)) {
+    if (number <= (std::int64_t{1} << 40)) number = 10 * number + (word.front() - '0');
+  }
+  if (!word.empty() && word.front() != '/') return 0;
+  return isNegative ? -number : number;
+}
+
+// Calls `visit(line)` for each line; the parts of an element that '\\' continues are one. Lines end where Assimp ends
+// them.
 template <typename Visit>
 void forEachObjLine(ByteSpan bytes, const Visit& visit) {
   std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  const auto take = [&text] {
-    const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
+  constexpr std::string_view kEnds("\r\n\f\0", 4);
+  const auto take = [&text, kEnds] {
+    const std::size_t end = std::min(text.find_first_of(kEnds), text.size());
     const std::string_view line = text.substr(0, end);
     text.remove_prefix(end);
     text.remove_prefix(text.starts_with("\r\n") ? 2 : std::min<std::size_t>(text.size(), 1));

@@ -66,7 +66,7 @@ Asset readGltf(ByteSpan bytes, const Resolver& resolver) {
     asset.format = "gltf";
   }
   decompress(asset);
-  resolveNodePointers(asset.document);
+  resolveNodePointers(asset.document, asset.warnings);
   warnOfUnknownExtensions(asset);
   return asset;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "limber/asset/accessor.h"
@@ -16,6 +17,26 @@ namespace {
 std::size_t shapeCount(const gltf::Document& document, const gltf::Node& node) {
   if (!node.mesh || document.meshes[*node.mesh].primitives.empty()) return 0;
   return document.meshes[*node.mesh].primitives.front().targets.size();
+}
+
+// A few kilobytes of nodes must not ask for gigabytes, nor for minutes where their channels share keys. `counts`: of
+// each node's shapes.
+void checkSizes(const Asset& asset, const std::vector<std::size_t>& counts, std::optional<Index> animation) {
+  constexpr std::size_t kMaxWeights = 16'000'000;
+  constexpr std::uint64_t kMaxKeyNumbers = 128'000'000;
+  std::size_t total = 0;
+  std::uint64_t keyNumbers = 0;
+  for (Index n = 0; n < counts.size(); ++n) {
+    if (counts[n] == 0) continue;
+    total += counts[n];
+    if (animation) keyNumbers += shapeTrackSize(asset, n, counts[n], *animation);
+    if (total > kMaxWeights) {
+      throw Error(ErrorCode::kLimit, "has too many nodes that show meshes with blend shapes", asset.name);
+    }
+    if (keyNumbers > kMaxKeyNumbers) {
+      throw Error(ErrorCode::kLimit, "has too many keys of blend shapes in one clip", asset.name);
+    }
+  }
 }
 
 // The keys of a track that can be sampled.
@@ -53,19 +74,16 @@ std::vector<float> movedAttribute(const Asset& asset, const gltf::Primitive& pri
 }  // namespace
 
 ShapeWeights readShapeWeights(const Asset& asset, std::optional<Index> animation, double seconds) {
-  constexpr std::size_t kMaxWeights = 16'000'000;  // a few kilobytes of nodes must not ask for gigabytes
-  ShapeWeights weights(asset.document.nodes.size());
-  std::size_t total = 0;
-  for (Index n = 0; n < weights.size(); ++n) {
-    const std::size_t count = shapeCount(asset.document, asset.document.nodes[n]);
-    if (count == 0) continue;
-    total += count;
-    if (total > kMaxWeights) {
-      throw Error(ErrorCode::kLimit, "has too many nodes that show meshes with blend shapes", asset.name);
-    }
-    const std::vector<Track<float>> still = shapeTracks(asset, n, count, std::nullopt);
-    const std::vector<Track<float>> tracks = animation ? shapeTracks(asset, n, count, animation) : still;
-    for (std::size_t s = 0; s < count; ++s) {
+  const Index nodeCount = asset.document.nodeCount();
+  std::vector<std::size_t> counts(nodeCount);
+  for (Index n = 0; n < nodeCount; ++n) counts[n] = shapeCount(asset.document, asset.document.nodes[n]);
+  checkSizes(asset, counts, animation);
+  ShapeWeights weights(nodeCount);
+  for (Index n = 0; n < nodeCount; ++n) {
+    if (counts[n] == 0) continue;
+    const std::vector<Track<float>> still = shapeTracks(asset, n, counts[n], std::nullopt);
+    const std::vector<Track<float>> tracks = animation ? shapeTracks(asset, n, counts[n], animation) : still;
+    for (std::size_t s = 0; s < counts[n]; ++s) {
       Track<Vec3f> track = validKeys(tracks[s]);
       if (track.times.empty()) track = validKeys(still[s]);
       weights[n].push_back(track.times.empty() ? 0.0f : static_cast<float>(sampleTrack(track, seconds).x()));

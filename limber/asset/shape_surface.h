@@ -13,7 +13,8 @@ namespace limber {
 using ShapeWeights = std::vector<std::vector<float>>;
 
 // As the nodes (or their meshes) have them; where the animation of that number moves them, as it does at `seconds`.
-// Keys that are not finite or not later than the one before are passed over. Throws Error kLimit above 16 million.
+// Keys that are not finite or not later than the one before are passed over. Throws Error kLimit above 16 million
+// weights, or where the animation's keys come to more than 128 million numbers.
 ShapeWeights readShapeWeights(const Asset& asset, std::optional<Index> animation = std::nullopt, double seconds = 0);
 
 // The first animation of that name, if there is one.

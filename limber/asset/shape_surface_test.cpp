@@ -79,5 +79,43 @@ TEST(ShapeSurface, AFewNodesMustNotAskForGigabytes) {
   EXPECT_THROW(readShapeWeights(asset), Error);
 }
 
+TEST(ShapeSurface, OfSeveralChannelsTheLastWholeOneCounts) {
+  Asset asset = growingSquare();
+  gltf::Animation& grow = asset.document.animations[*animationNamed(asset.document, "grow")];
+  const Index times = addFloatAccessor(asset, std::vector<float>{0, 1}, 1);
+  const Index whole = addFloatAccessor(asset, std::vector<float>{3, 3}, 1);
+  const Index part = addFloatAccessor(asset, std::vector<float>{9}, 1);
+  for (const Index values : {whole, part}) {
+    gltf::AnimationChannel channel = grow.channels[0];
+    channel.sampler = addElement(grow.samplers, {{}, times, values, Interpolation::kLinear});
+    grow.channels.push_back(std::move(channel));
+  }
+  EXPECT_THAT(readShapeWeights(asset, animationNamed(asset.document, "grow"), 0.5)[2], ElementsAre(3));
+}
+
+TEST(ShapeSurface, ManyNodesOnOneLongSamplerAreRefused) {
+  Asset asset = growingSquare();
+  const std::optional<Index> clip = animationNamed(asset.document, "grow");
+  constexpr std::size_t kKeys = 1'000'000;
+  std::vector<float> times(kKeys);
+  for (std::size_t k = 0; k < kKeys; ++k) times[k] = static_cast<float>(k);
+  gltf::Animation& grow = asset.document.animations[*clip];
+  grow.samplers[0].input = addFloatAccessor(asset, times, 1);
+  grow.samplers[0].output = addFloatAccessor(asset, std::vector<float>(kKeys), 1);
+  gltf::Node shows;
+  shows.mesh = 0;
+  for (int i = 0; i < 100; ++i) {
+    gltf::AnimationChannel channel = grow.channels[0];
+    channel.target.node = addElement(asset.document.nodes, gltf::Node(shows));
+    grow.channels.push_back(std::move(channel));
+  }
+  try {
+    readShapeWeights(asset, clip, 1);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::kLimit);
+  }
+}
+
 }  // namespace
 }  // namespace limber

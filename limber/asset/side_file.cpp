@@ -30,6 +30,10 @@ std::optional<Bytes> open(const Resolver& resolver, const std::string& path) {
 
 }  // namespace
 
+std::optional<Bytes> sideFileThere(const Resolver& resolver, std::string_view path) {
+  return open(resolver, withSlashes(path));
+}
+
 std::optional<Bytes> sideFile(const Resolver& resolver, std::string_view path) {
   const std::string name = withSlashes(path);
   if (std::optional<Bytes> bytes = open(resolver, name)) return bytes;

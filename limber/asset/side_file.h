@@ -12,4 +12,7 @@ namespace limber {
 // is not there, leads out of the model's folder or cannot be read.
 std::optional<Bytes> sideFile(const Resolver& resolver, std::string_view path);
 
+// As it is only.
+std::optional<Bytes> sideFileThere(const Resolver& resolver, std::string_view path);
+
 }  // namespace limber

@@ -11,14 +11,12 @@ namespace limber {
 
 void joinSkinRoots(gltf::Document& document, UniqueNames& names) {
   const SceneGraph graph = readSceneGraph(document);
+  std::vector<Index> rootOf(graph.nodeCount());
+  for (const Index n : graph.allNodes) rootOf[n] = graph.parent[n] ? rootOf[*graph.parent[n]] : n;
   std::set<Index> joined;
   for (const gltf::Skin& skin : document.skins) {
     std::set<Index> roots;
-    for (const Index joint : skin.joints) {
-      Index root = joint;
-      while (graph.parent[root]) root = *graph.parent[root];
-      roots.insert(root);
-    }
+    for (const Index joint : skin.joints) roots.insert(rootOf[joint]);
     if (roots.size() > 1) joined.insert(roots.begin(), roots.end());
   }
   if (joined.empty()) return;

@@ -1,36 +1,43 @@
 #include "limber/evaluate/skinned_model.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "limber/asset/geometry.h"
+#include "limber/asset/rest_pose.h"
 #include "limber/asset/rig_io.h"
+#include "limber/asset/shape_surface.h"
 #include "limber/mesh/prepare.h"
 
 namespace limber {
 
-SkinnedModel readSkinnedModel(const Asset& asset) {
-  if (!hasRig(asset)) {
-    throw Error(ErrorCode::kUnsupported, "has no skin weights to compare", asset.name, "rig it first: limber rig");
+SkinnedModel readSkinnedModel(const Asset& given) {
+  if (!hasRig(given)) {
+    throw Error(ErrorCode::kUnsupported, "has no skin weights to compare", given.name, "rig it first: limber rig");
   }
+  const std::optional<Asset> joined = withJoinedBinds(given);
+  const Asset& asset = joined ? *joined : given;
   Geometry geometry = collectGeometry(asset);
+  moveByShapes(asset, readShapeWeights(asset), geometry);
   AssetSkeleton skeleton = readSkeleton(asset);
   SkinnedModel result;
   result.weights = readWeights(asset, geometry, skeleton);
   result.skeleton = std::move(skeleton.skeleton);
+  result.stored = storedVertices(geometry);
   result.mesh = {std::move(geometry.positions), std::move(geometry.triangles)};
   return result;
 }
 
 SkinnedModel weldedModel(const SkinnedModel& model) {
-  PreparedMesh prepared = prepareMesh(model.mesh.positions, model.mesh.triangles);
+  PreparedMesh prepared = prepareMesh(model.mesh.positions, model.mesh.triangles, model.stored);
   SkinnedModel welded;
   welded.skeleton = model.skeleton;
   welded.mesh = std::move(prepared.mesh);
   const Index count = welded.mesh.vertexCount(), slots = model.weights.slots;
   welded.weights = {slots, std::vector<Index>(std::size_t{count} * slots),
                     std::vector<float>(std::size_t{count} * slots)};
-  for (std::size_t v = 0; v < prepared.weldedVertex.size(); ++v) {
+  for (std::size_t v = prepared.weldedVertex.size(); v-- > 0;) {
     const Index to = prepared.weldedVertex[v];
     welded.mesh.positions[to] = model.mesh.positions[v];
     const auto joints = model.weights.jointsOf(static_cast<Index>(v));

@@ -10,6 +10,7 @@
 #include "limber/anatomy/body_part.h"
 #include "limber/anatomy/humanoid_joints.h"
 #include "limber/asset/read.h"
+#include "limber/asset/rest_pose.h"
 #include "limber/asset/rig_io.h"
 #include "limber/core/random.h"
 #include "limber/evaluate/body_joints.h"
@@ -133,6 +134,7 @@ std::vector<std::size_t> drawn(std::vector<std::size_t> from, std::size_t most, 
 TransferTrial tryTransfer(const Person& source, const Person& target, const TransferFunction& transfer) {
   const Asset giver = readAsset(source.path);
   Asset taker = readAsset(target.path);
+  joinBindPoses(taker);
   removeRig(taker);
   TransferTrial trial;
   trial.source = source.path.stem().string();

@@ -144,7 +144,7 @@ void measureDeformation(const PairedSkins& skins, const Skeleton& skeleton, Inde
 // Weights of the first vertex at each place stand for the welded one.
 void measureSmoothness(const SkinnedModel& truth, const PairedSkins& skins, WeightComparison& report) {
   if (report.unpairedVertices > 0) return;  // vertices of the skins are then not those of the triangles
-  const PreparedMesh welded = prepareMesh(truth.mesh.positions, truth.mesh.triangles);
+  const PreparedMesh welded = prepareMesh(truth.mesh.positions, truth.mesh.triangles, truth.stored);
   std::vector<Index> sourceVertex(welded.mesh.vertexCount(), kNoIndex);
   for (Index v = truth.mesh.vertexCount(); v-- > 0;) sourceVertex[welded.weldedVertex[v]] = v;
   std::vector<std::pair<Index, Index>> edges;

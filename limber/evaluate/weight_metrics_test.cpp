@@ -80,6 +80,17 @@ TEST(CompareWeights, SmoothnessIsTheMeanOverEdges) {
   EXPECT_NEAR(c.smoothness, 6.0 / 5, 1e-6);
 }
 
+// Two squares, each held by a joint; the grid of the second one has moved it off the first.
+TEST(CompareWeights, SmoothnessGoesAcrossSeamsOfGrids) {
+  const std::vector<std::pair<Index, float>> left = {{0, 1.0f}}, right = {{1, 1.0f}};
+  SkinnedModel model = strip({left, left, left, left, right, right, right, right});
+  for (Index v = 0; v < 4; ++v) model.mesh.positions.push_back(model.mesh.positions[v] + Vec3f(1.01f, 0, 0));
+  model.mesh.triangles.insert(model.mesh.triangles.end(), {{4, 5, 6}, {4, 6, 7}});
+  EXPECT_EQ(compareWeights(model, model).truthSmoothness, 0);
+  model.stored = {{0, 4, Vec3::Zero(), 0.02}, {4, 4, Vec3::Zero(), 0.02}};
+  EXPECT_NEAR(compareWeights(model, model).truthSmoothness, 3 * 2.0 / 9, 1e-6);
+}
+
 TEST(CompareWeights, DeformationIsTheDistanceInEachPose) {
   const SkinnedModel result = strip({{{0, 1.0f}}, {{1, 1.0f}}, {{1, 1.0f}}, {{1, 1.0f}}});
   const WeightComparison c = compareWeights(result, truthStrip());

@@ -469,4 +469,10 @@ SurfacePoint Bvh::nearestPoint(const Vec3& point) const {
   return best;
 }
 
+Index nearestCorner(const TriMesh& mesh, const SurfacePoint& point) {
+  Eigen::Index corner = 0;
+  point.weights.maxCoeff(&corner);
+  return mesh.triangles[point.triangle][static_cast<std::size_t>(corner)];
+}
+
 }  // namespace limber

@@ -18,6 +18,9 @@ struct SurfacePoint {
   double distance = 0;  // from the point asked about; for a ray the parameter t
 };
 
+// The corner of its triangle that the point is nearest to by its weights; the first of several.
+Index nearestCorner(const TriMesh& mesh, const SurfacePoint& point);
+
 // Bounding volume hierarchy of up to four children a node, built by the surface area heuristic over binned centroids
 // (Wald 2007). The tree is the same for any number of threads. It keeps a copy of the corners; the mesh may go.
 //

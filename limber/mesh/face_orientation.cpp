@@ -7,6 +7,7 @@
 
 #include "limber/mesh/bvh.h"
 #include "limber/mesh/edge_groups.h"
+#include "limber/mesh/model_box.h"
 
 namespace limber {
 
@@ -15,7 +16,7 @@ namespace {
 // How clearly an open patch must enclose its centroid for that to decide: 1 for a sphere, near 0 for a sheet.
 constexpr double kClearlyEncloses = 0.2;
 constexpr std::size_t kRayFaces = 16;  // of a patch, that rays begin at
-constexpr double kRayMargin = 1e-5;    // diagonals of the model: what is nearer to a ray's ends does not block it
+constexpr double kRayMargin = 1e-5;    // diagonals of modelBox: what is nearer to a ray's ends does not block it
 
 // Whether two triangles run opposite ways along their common edge, as neighbours should.
 bool agree(const TriMesh& mesh, Index side, Index other) {
@@ -114,7 +115,8 @@ class FaceReverser {
       for (const Triangle& t : mesh_.triangles) {
         for (const Index v : t) box.add(mesh_.position(v));
       }
-      diagonal_ = box.diagonal();
+      reach_ = 2 * box.diagonal();
+      margin_ = kRayMargin * modelBox(mesh_).diagonal();
     }
     const std::size_t count = std::min(kRayFaces, patch.triangles.size());
     int leaving = 0;
@@ -125,8 +127,8 @@ class FaceReverser {
       const Vec3 normal = sign_[t] * twice.normalized(), tilt = 0.5 * normal.unitOrthogonal();
       for (const Vec3& lean : {Vec3(Vec3::Zero()), tilt, Vec3(-tilt)}) {
         for (const int side : {1, -1}) {
-          const Vec3 ray = 2 * diagonal_ * (side * normal + lean);
-          if (!surface_->segmentBlocked(from, from + ray, kRayMargin * diagonal_)) leaving += side;
+          const Vec3 ray = reach_ * (side * normal + lean);
+          if (!surface_->segmentBlocked(from, from + ray, margin_)) leaving += side;
         }
       }
     }
@@ -138,7 +140,7 @@ class FaceReverser {
   bool allAgree_ = true;
   std::vector<int> sign_;
   std::unique_ptr<Bvh> surface_;
-  double diagonal_ = 0;
+  double reach_ = 0, margin_ = 0;  // of rays
 };
 
 // By triangle whether an earlier one has the same three vertices; both share each of their edges.

@@ -35,8 +35,16 @@ TEST(MendFaces, AnyShareOfReversedFacesIsMended) {
   for (const double share : {0.1, 0.3, 0.5, 0.7, 0.9}) {
     TriMesh mesh = clean;
     reverseShare(mesh, share);
+    TriMesh beside = mesh;  // a bit far away, as broken vertices make
+    const auto first = beside.vertexCount();
+    for (const Vec3f& p : {Vec3f(4e5f, 0, 0), Vec3f(4e5f, 0.1f, 0), Vec3f(4e5f, 0, 0.1f)})
+      beside.positions.push_back(p);
+    beside.triangles.push_back({first, first + 1, first + 2});
     mendFaces(mesh);
     EXPECT_NEAR(volumeOf(mesh), volumeOf(clean), 1e-6) << share;
+    mendFaces(beside);
+    beside.triangles.pop_back();
+    EXPECT_EQ(beside.triangles, mesh.triangles);
   }
 }
 

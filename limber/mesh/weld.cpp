@@ -265,7 +265,13 @@ class Welder {
     std::map<Pair, std::size_t> matched, met = meetings();
     for (const Match& match : matches) ++matched[std::minmax(rangeOf_[match.a], rangeOf_[match.b])];
     const std::set<Pair> alongSeams = matchesAlongSeams(matches, openEdges);
-    std::map<Index, std::vector<Index>> members;  // of what has been joined, by its lowest vertex
+    std::map<Index, std::vector<Index>> members;  // of each point that is matched, by its lowest vertex
+    for (const Match& match : matches) {
+      for (const Index v : {match.a, match.b}) members[same_[v]];
+    }
+    for (Index v = 0; v < positions_.size(); ++v) {
+      if (const auto point = members.find(same_[v]); point != members.end()) point->second.push_back(v);
+    }
     for (const Match& match : matches) {
       const Pair ranges = std::minmax(rangeOf_[match.a], rangeOf_[match.b]);
       if (alongSeams.count({match.a, match.b}) > 0 && met[ranges] < matched[ranges]) join(match, members);
@@ -285,7 +291,9 @@ class Welder {
     for (const Match& match : matches) {
       for (const Index a : beside[match.a]) {
         for (const Index b : beside[match.b]) {
-          if (a == b || pairs.count(std::minmax(a, b)) > 0) result.insert({match.a, match.b});
+          const Pair pair = std::minmax(a, b);
+          const bool isItself = pair == Pair(match.a, match.b);
+          if (a == b || (!isItself && pairs.count(pair) > 0)) result.insert({match.a, match.b});
         }
       }
     }
@@ -296,8 +304,8 @@ class Welder {
   void join(const Match& match, std::map<Index, std::vector<Index>>& members) {
     const Index low = std::min(same_[match.a], same_[match.b]), high = std::max(same_[match.a], same_[match.b]);
     if (low == high) return;
-    std::vector<Index>& kept = members.try_emplace(low, 1, low).first->second;
-    std::vector<Index>& added = members.try_emplace(high, 1, high).first->second;
+    std::vector<Index>& kept = members.at(low);
+    const std::vector<Index>& added = members.at(high);
     for (const Index a : kept) {
       for (const Index b : added) {
         if (rangeOf_[a] == rangeOf_[b]) return;

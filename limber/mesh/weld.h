@@ -18,9 +18,9 @@ struct StoredVertices {
 // Returns #V representatives: the lowest vertex of the same point. A representative represents itself.
 //
 // Equal positions (bit for bit, -0 equal to 0) are one point. So are vertices that are no farther apart than rounding
-// explains: 2^-20 of the model's longest side (modelBox), and for either vertex 2^-22 of its distance from 0 and from
-// the origin of its range; at most 1/16 of the median edge of either range. A vertex joins the nearest representative
-// before it, so that a chain of near vertices does not become one.
+// explains: 2^-20 of the model's longest side (modelBox), and for either vertex 2^-22 of its largest coordinate, as it
+// is and seen from the origin of its range; at most 1/16 of the median edge of either range. A vertex joins the nearest
+// representative before it, so that a chain of near vertices does not become one.
 //
 // A grid is much coarser than that. Vertices of one range lie on one grid and stay apart. Those of two ranges that have
 // grids join where open edges meet along a seam: both ends of an edge with one triangle have their nearest counterpart

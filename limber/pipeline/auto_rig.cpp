@@ -10,13 +10,11 @@
 #include <fmt/format.h>
 
 #include "limber/asset/geometry.h"
-#include "limber/asset/rest_pose.h"
 #include "limber/asset/rig_io.h"
-#include "limber/asset/shape_surface.h"
 #include "limber/core/known_error.h"
-#include "limber/mesh/components.h"
 #include "limber/pipeline/accessories.h"
 #include "limber/pipeline/figure_geometry.h"
+#include "limber/pipeline/figure_to_rig.h"
 #include "limber/pipeline/hanging_chains.h"
 #include "limber/pipeline/left_out_weights.h"
 #include "limber/pipeline/stand_upright.h"
@@ -49,20 +47,6 @@ class Rollback {
   Warnings warnings_;
   std::vector<std::size_t> sizes_;
   bool done_ = false;
-};
-
-// Pieces of the mesh by vertex, and how many have a triangle: loose vertices are none.
-struct Pieces {
-  std::vector<Index> ofVertex;
-  Index solid = 0;
-
-  explicit Pieces(const TriMesh& mesh) {
-    Index count = 0;
-    ofVertex = vertexComponents(mesh, &count);
-    std::vector<bool> isSolid(count, false);
-    for (const Triangle& t : mesh.triangles) isSolid[ofVertex[t[0]]] = true;
-    solid = static_cast<Index>(std::count(isSolid.begin(), isSolid.end(), true));
-  }
 };
 
 [[noreturn]] void refuseRig(const Asset& asset) {
@@ -117,13 +101,13 @@ Skeleton toWorld(Skeleton skeleton, const WorkingFrame& frame) {
 }
 
 // What became of vertices that no bone reaches: which nodes they belong to, and a warning.
-void reportBridged(const Asset& asset, const Geometry& geometry, const PreparedMesh& prepared, const Pieces& pieces,
-                   const std::vector<Index>& bridged, AutoRigReport& report) {
+void reportBridged(const Asset& asset, const Geometry& geometry, const PreparedMesh& prepared,
+                   const std::vector<Index>& pieceOf, const std::vector<Index>& bridged, AutoRigReport& report) {
   if (bridged.empty()) return;
   std::vector<bool> isBridged(prepared.mesh.vertexCount(), false), inPiece(prepared.mesh.vertexCount(), false);
   for (const Index v : bridged) {
     isBridged[v] = true;
-    inPiece[pieces.ofVertex[v]] = true;
+    inPiece[pieceOf[v]] = true;
   }
   std::map<Index, BridgedNode> nodes;
   for (const PrimitiveInstance& instance : geometry.instances) {
@@ -170,8 +154,9 @@ struct Rigged {
   AssetSkeleton kept;
 };
 
-Rigged makeRig(const Asset& asset, const Geometry& geometry, const FigureSurface& figure, const Pieces& pieces,
-               const AutoRigOptions& options, AutoRigReport& report, Progress& progress) {
+Rigged makeRig(const Asset& asset, const FigureToRig& input, const AutoRigOptions& options, AutoRigReport& report,
+               Progress& progress) {
+  const auto& [geometry, figure, pieceOf] = input;
   const PreparedMesh& prepared = figure.prepared;
   Rigged result;
   std::vector<Bone> bones;
@@ -229,7 +214,7 @@ Rigged makeRig(const Asset& asset, const Geometry& geometry, const FigureSurface
   ofOthers.insert(figure.surroundings.begin(), figure.surroundings.end());
   for (const HungAccessory& accessory : hung) ofOthers.insert(accessory.vertices.begin(), accessory.vertices.end());
   std::erase_if(skin.bridged, [&](Index v) { return ofOthers.count(v) > 0; });
-  reportBridged(asset, geometry, prepared, pieces, skin.bridged, report);
+  reportBridged(asset, geometry, prepared, pieceOf, skin.bridged, report);
   if (options.chains && result.made && !report.matches.empty() && !report.isAbstained) {
     result.chains = chainsOfTails(*result.made);
   }
@@ -248,52 +233,21 @@ Rigged makeRig(const Asset& asset, const Geometry& geometry, const FigureSurface
   return result;
 }
 
-void takeRigOut(Asset& asset, AutoRigReport& report) {
-  const std::size_t clips = asset.document.animations.size();
-  std::set<Index> joints;
-  for (const gltf::Skin& skin : asset.document.skins) joints.insert(skin.joints.begin(), skin.joints.end());
-  report.removedJoints = static_cast<Index>(joints.size());
-  removeRig(asset);
-  report.removedClips = static_cast<Index>(clips - asset.document.animations.size());
-}
-
 AutoRigReport runStages(Asset& asset, const AutoRigOptions& options, Progress& progress) {
   AutoRigReport report;
-  report.skinning = options.skinning;
-  report.maxInfluences = options.weights.maxInfluences;
-
-  progress.stage("read geometry");
   Rollback rollback(asset);
-  joinBindPoses(asset);
-  if (options.existingRig == ExistingRig::kReplace && hasRig(asset)) takeRigOut(asset, report);
-  Geometry geometry = collectGeometry(asset);
-  moveByShapes(asset, readShapeWeights(asset), geometry);
-
-  progress.stage("weld");
-  const FigureSurface figure = figureOf(geometry, geometry.triangles);
-  const PreparedMesh& prepared = figure.prepared;
-  const Pieces pieces(prepared.mesh);
-  report.sourceVertices = static_cast<Index>(geometry.positions.size());
-  report.weldedVertices = prepared.mesh.vertexCount();
-  report.triangles = prepared.mesh.triangleCount();
-  report.pieces = pieces.solid;
-  report.warnings.append(prepared.warnings);
-
-  const Rigged rig = makeRig(asset, geometry, figure, pieces, options, report, progress);
+  const FigureToRig input = readFigureToRig(asset, options, report, progress);
+  const Rigged rig = makeRig(asset, input, options, report, progress);
 
   progress.stage("write rig");
   if (rig.made) {
-    writeSprings(asset, attachRig(asset, geometry, *rig.made, rig.weights), rig.chains);
+    writeSprings(asset, attachRig(asset, input.geometry, *rig.made, rig.weights), rig.chains);
     if (rig.up) standUpright(asset, *rig.up, options.standUpright, report.warnings);
   } else {
-    replaceWeights(asset, geometry, rig.kept, rig.weights);
+    replaceWeights(asset, input.geometry, rig.kept, rig.weights);
   }
   rollback.commit();
-  progress.finish();
-
-  Warnings stageWarnings = std::exchange(report.warnings, asset.warnings);
-  report.warnings.append(stageWarnings);
-  report.stages = progress.stages();
+  completeReport(asset, report, progress);
   return report;
 }
 

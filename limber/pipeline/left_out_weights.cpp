@@ -6,20 +6,23 @@
 
 namespace limber {
 
-void bindLeftOut(const FigureSurface& surface, SkinWeights& weights) {
-  for (const Index v : surface.surroundings) bindTo(0, v, weights);
-  if (surface.innerShell.empty()) return;
+std::vector<Index> outerVertices(const FigureSurface& surface) {
+  if (surface.innerShell.empty()) return {};
   const TriMesh& mesh = surface.prepared.mesh;
   const Bvh bvh(mesh);
-  for (const Index v : surface.innerShell) {
-    const SurfacePoint nearest = bvh.nearestPoint(mesh.position(v));
-    Eigen::Index corner = 0;
-    nearest.weights.maxCoeff(&corner);
-    const Index from = mesh.triangles[nearest.triangle][static_cast<std::size_t>(corner)];
-    std::copy_n(weights.joints.begin() + std::ptrdiff_t{from} * weights.slots, weights.slots,
-                weights.joints.begin() + std::ptrdiff_t{v} * weights.slots);
-    std::copy_n(weights.weights.begin() + std::ptrdiff_t{from} * weights.slots, weights.slots,
-                weights.weights.begin() + std::ptrdiff_t{v} * weights.slots);
+  std::vector<Index> outer;
+  for (const Index v : surface.innerShell) outer.push_back(nearestCorner(mesh, bvh.nearestPoint(mesh.position(v))));
+  return outer;
+}
+
+void bindLeftOut(const FigureSurface& surface, SkinWeights& weights) {
+  for (const Index v : surface.surroundings) bindTo(0, v, weights);
+  const std::vector<Index> outer = outerVertices(surface);
+  for (std::size_t i = 0; i < outer.size(); ++i) {
+    const std::ptrdiff_t from = std::ptrdiff_t{outer[i]} * weights.slots;
+    const std::ptrdiff_t to = std::ptrdiff_t{surface.innerShell[i]} * weights.slots;
+    std::copy_n(weights.joints.begin() + from, weights.slots, weights.joints.begin() + to);
+    std::copy_n(weights.weights.begin() + from, weights.slots, weights.weights.begin() + to);
   }
 }
 

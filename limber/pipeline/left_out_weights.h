@@ -1,15 +1,19 @@
 // Weights of what is in a model but no part of the surface that was rigged.
 #pragma once
 
+#include <vector>
+
 #include "limber/skeleton/skin_weights.h"
 #include "limber/surface/figure_surface.h"
 
 namespace limber {
 
-// Has inner shells take the weights of the vertices of the surface that are nearest to them, and surroundings follow
-// joint 0, the root.
-// weights  of surface.prepared.mesh
+// For each vertex of surface.innerShell the vertex of the surface that is nearest to it.
 // Cost: O(#F log #F) where there is an inner shell.
+std::vector<Index> outerVertices(const FigureSurface& surface);
+
+// Has inner shells take the weights of the vertices of the surface that are nearest to them (outerVertices), and
+// surroundings follow joint 0, the root. weights  of surface.prepared.mesh Cost: that of outerVertices.
 void bindLeftOut(const FigureSurface& surface, SkinWeights& weights);
 
 }  // namespace limber

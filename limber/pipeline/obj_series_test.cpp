@@ -181,6 +181,8 @@ TEST_F(ObjSeriesFiles, ThatLieAreRefused) {
   EXPECT_THAT(refused(good + "f 0 1 2\n"), HasSubstr("a face names a vertex '0'"));
   EXPECT_THAT(refused(good + "f 1 2 1e300\n"), HasSubstr("a face names a vertex '1e300'"));
   EXPECT_THAT(refused(good + "f 1 2 99999999999999999999\n"), HasSubstr("a face names a vertex"));
+  EXPECT_THAT(refused(good + "f 1 2 1.5\n"), HasSubstr("a face names a vertex '1.5'"));
+  EXPECT_THAT(refused(good + "f 1 2 3x\n"), HasSubstr("a face names a vertex '3x'"));
   EXPECT_THAT(refused(good + "f 1 2 nan\n"), HasSubstr("a face names a vertex"));
   EXPECT_THAT(refused(good + "f 1 2 x\n"), HasSubstr("a face names a vertex"));
   EXPECT_THAT(refused(good + "f 1 2"), HasSubstr("other faces than first.obj"));

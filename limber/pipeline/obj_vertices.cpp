@@ -1,6 +1,5 @@
 #include "limber/pipeline/obj_vertices.h"
 
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -13,26 +12,19 @@
 #include "limber/asset/geometry.h"
 #include "limber/asset/obj_lines.h"
 #include "limber/core/error.h"
-#include "limber/core/parse_number.h"
 
 namespace limber {
 
 namespace {
 
-// x y z, x y z w or x y z r g b.
 void addVertex(std::string_view line, const std::string& name, ObjVertices& result) {
-  std::array<double, 6> numbers = {};
-  std::size_t count = 0;
-  while (count < numbers.size()) {
-    const std::string_view word = nextObjWord(line);
-    const char* at = word.data();
-    const std::optional<double> number = parseNumber(at, word.data() + word.size());
-    if (!number) break;
-    numbers[count++] = *number;
+  const ObjVertexWords vertex(line);
+  Vec3 place;  // what is no number is not finite either
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    place[i] = objNumberOf(vertex.words[static_cast<std::size_t>(i)]).value_or(std::nan(""));
   }
-  const double w = count == 4 ? numbers[3] : 1;
-  const Vec3f position = (Vec3(numbers[0], numbers[1], numbers[2]) / w).cast<float>();
-  if (count < 3 || !position.allFinite()) {
+  const Vec3f position = (place / vertex.w()).cast<float>();
+  if (!position.allFinite()) {
     throw Error(ErrorCode::kBadData, fmt::format("vertex {} is not three finite numbers", result.positions.size() + 1),
                 name);
   }
@@ -46,10 +38,10 @@ void addFace(std::string_view line, const std::string& name, ObjVertices& result
     return Error(ErrorCode::kBadData, fmt::format("a face names a vertex '{}'", word), name);
   };
   for (std::string_view word = nextObjWord(line); !word.empty(); word = nextObjWord(line)) {
-    const char* at = word.data();
-    const std::optional<double> number = parseNumber(at, word.data() + word.size());
-    const double vertex = !number ? -1 : *number < 0 ? *number + double(result.positions.size()) : *number - 1;
-    if (!(vertex >= 0 && vertex < kNoIndex) || vertex != std::floor(vertex)) throw badCorner(word.substr(0, 40));
+    std::string_view corner = word;
+    const std::int64_t number = takeObjNumber(corner);
+    const std::int64_t vertex = number < 0 ? static_cast<std::int64_t>(result.positions.size()) + number : number - 1;
+    if (vertex < 0 || vertex >= std::int64_t{kNoIndex}) throw badCorner(word.substr(0, 40));
     result.corners.push_back(static_cast<Index>(vertex));
   }
   result.corners.push_back(kNoIndex);
@@ -73,9 +65,9 @@ std::vector<Index> takeNumbers(Asset& asset, const Geometry& geometry, std::size
     const std::optional<Index> accessor = attributes.find(name);
     const std::vector<float> colors = accessor ? readFloats(asset, *accessor) : std::vector<float>();
     for (std::size_t i = 0; i + 3 < colors.size(); i += 4) {
-      const double number = double{colors[i]} + double{kObjNumberBase} * colors[i + 1];
-      if (!(number >= 0 && number < static_cast<double>(count))) break;
-      result.push_back(static_cast<Index>(number));
+      const std::optional<std::size_t> number = objNumber(colors[i], colors[i + 1], count);
+      if (!number) break;
+      result.push_back(static_cast<Index>(*number));
     }
     attributes.erase(name);
   }

@@ -10,6 +10,7 @@
 
 #include "limber/asset/geometry.h"
 #include "limber/asset/json_text.h"
+#include "limber/asset/rest_pose.h"
 #include "limber/asset/rig_io.h"
 #include "limber/asset/unique_names.h"
 #include "limber/core/known_error.h"
@@ -111,15 +112,6 @@ SourceModel readSource(const Asset& asset, Geometry geometry, const Accessories&
   return result;
 }
 
-void removeOldRig(Asset& target, TransferReport& report) {
-  std::set<Index> joints;
-  for (const gltf::Skin& skin : target.document.skins) joints.insert(skin.joints.begin(), skin.joints.end());
-  const std::size_t clips = target.document.animations.size();
-  report.removedJoints = static_cast<Index>(joints.size());
-  removeRig(target);
-  report.removedClips = static_cast<Index>(clips - target.document.animations.size());
-}
-
 std::vector<JointLandmark> templateLandmarks(const Asset& sourceAsset, const SourceModel& source,
                                              const Asset& targetAsset, const Geometry& target, TransferReport& report,
                                              Progress& progress) {
@@ -150,17 +142,21 @@ std::vector<JointLandmark> findLandmarks(const Asset& sourceAsset, const SourceM
 }
 
 std::vector<std::string> transferShapes(const Asset& sourceAsset, const SourceModel& source, const RigTransfer& rig,
-                                        Asset& target, const Geometry& geometry, const PreparedMesh& prepared) {
+                                        Asset& target, const Geometry& geometry, const FigureSurface& figure) {
   const std::vector<BlendShape> shapes = readBlendShapes(sourceAsset, source.geometry);
   if (shapes.empty()) return {};
+  const PreparedMesh& prepared = figure.prepared;
   const std::vector<Mat3> gradients = deformationGradients(rig.source, rig.registered);
+  const std::vector<Index> outer = outerVertices(figure);
   std::vector<BlendShape> carried;
   for (const BlendShape& shape : shapes) {
     std::vector<Vec3f> welded(rig.source.positions.size(), Vec3f::Zero());
     for (std::size_t v = shape.offsets.size(); v-- > 0;) {
       if (source.prepared.weldedVertex[v] != kNoIndex) welded[source.prepared.weldedVertex[v]] = shape.offsets[v];
     }
-    const std::vector<Vec3f> offsets = carriedOffsets(rig.source, gradients, welded, rig.points);
+    std::vector<Vec3f> offsets = carriedOffsets(rig.source, gradients, welded, rig.points);
+    for (std::size_t i = 0; i < outer.size(); ++i) offsets[figure.innerShell[i]] = offsets[outer[i]];
+    for (const Index v : figure.surroundings) offsets[v].setZero();
     BlendShape result{shape.name, {}};
     for (const Index v : prepared.weldedVertex) {
       result.offsets.push_back(static_cast<float>(prepared.frame.scale) * offsets[v]);
@@ -234,9 +230,12 @@ TransferReport runTransfer(const Asset& sourceAsset, Asset& target, const Transf
   std::optional<Skeleton> own;
   if (hasRig(target)) {
     if (options.ownSkeleton) own = readSkeleton(target).skeleton;
-    removeOldRig(target, report);
+    joinBindPoses(target);
+    const RemovedRig removed = takeRigOut(target);
+    report.removedJoints = removed.joints;
+    report.removedClips = removed.clips;
   }
-  Geometry sourceGeometry = collectGeometry(sourceAsset), geometry = collectGeometry(target);
+  Geometry sourceGeometry = shapedGeometry(sourceAsset), geometry = shapedGeometry(target);
   Accessories ofSource = findAccessories(sourceAsset, sourceGeometry), ofTarget = findAccessories(target, geometry);
   leaveInCommon(ofSource, ofTarget);
   const SourceModel source = readSource(sourceAsset, std::move(sourceGeometry), ofSource);
@@ -262,11 +261,11 @@ TransferReport runTransfer(const Asset& sourceAsset, Asset& target, const Transf
 
   progress.stage("write rig");
   if (options.blendShapes) {
-    report.blendShapes = transferShapes(sourceAsset, source, rig, target, bare.geometry, bare.figure.prepared);
+    report.blendShapes = transferShapes(sourceAsset, source, rig, target, bare.geometry, bare.figure);
   }
   if (options.colors.at) {
     const LaidSource laid = {source.geometry, source.prepared, rig};
-    transferColors(laid, options.colors, target, bare.geometry, bare.figure.prepared);
+    transferColors(laid, options.colors, target, bare.geometry, bare.figure);
   }
   freeNames(skeleton, target);
   attachRig(target, bare.geometry, skeleton, expandWeights(rig.weights, bare.figure.prepared.weldedVertex));
@@ -283,7 +282,8 @@ TransferReport transferOnto(const Asset& source, Asset& target, const TransferAs
   Asset result = target.clone();
   TransferReport report = [&] {
     try {
-      return runTransfer(source, result, options, progress);
+      const std::optional<Asset> joined = withJoinedBinds(source);
+      return runTransfer(joined ? *joined : source, result, options, progress);
     } catch (const Error& error) {
       if (!error.where().empty()) throw;
       throwWithin(error, target.name);

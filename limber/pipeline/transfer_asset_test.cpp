@@ -11,6 +11,7 @@
 #include "limber/asset/rig_io.h"
 #include "limber/asset/testing/document_json.h"
 #include "limber/asset/testing/scene_builder.h"
+#include "limber/pipeline/testing/elsewhere_skin.h"
 #include "limber/pipeline/texture_bake.h"
 #include "limber/transfer/testing/capsule_person.h"
 
@@ -132,6 +133,123 @@ TEST(TransferAssetTest, BringsBlendShapesAlong) {
   options.blendShapes = false;
   EXPECT_TRUE(transferred(source, without, options).blendShapes.empty());
   EXPECT_TRUE(without.document.meshes[0].primitives[0].targets.empty());
+}
+
+// Its own rig and a shape that lifts all of it.
+Asset liftedPerson() {
+  Asset asset = riggedPerson();
+  std::vector<float> offsets;
+  for (std::size_t v = 0; v < capsulePerson().mesh.positions.size(); ++v) {
+    offsets.insert(offsets.end(), {0, v % 2 == 0 ? 0.05f : 0.06f, 0});
+  }
+  asset.document.meshes[0].primitives[0].targets.emplace_back().set(
+      "POSITION", addFloatAccessor(asset, offsets, 3, kVertexTarget, true));
+  return asset;
+}
+
+// The person and a second mesh of one material, with the person's rig; the second hangs on the leg.
+Asset personAnd(const TriMesh& other) {
+  const RiggedBody person = capsulePerson();
+  SceneBuilder scene;
+  for (const TriMesh& mesh : {person.mesh, other}) {
+    Json primitive = scene.primitive(mesh.positions, mesh.triangles);
+    primitive["material"] = 0;
+    scene.addNode({{"mesh", scene.addMesh(Json::array({primitive}))}});
+  }
+  scene.asset().document.materials.emplace_back().pbrMetallicRoughness.emplace().baseColorFactor = Vec4(1, 0, 0, 1);
+  scene.asset().document.scene = scene.addScene({0, 1});
+  Asset asset = scene.build();
+  asset.name = "two.glb";
+  SkinWeights weights = person.weights;
+  for (std::size_t v = 0; v < other.positions.size(); ++v) {
+    weights.joints.insert(weights.joints.end(), {9, 0});
+    weights.weights.insert(weights.weights.end(), {1, 0});
+  }
+  attachRig(asset, collectGeometry(asset), person.skeleton, weights);
+  return asset;
+}
+
+TEST(TransferAssetTest, AFloorTakesNoShapesAndNoColors) {
+  TriMesh floor;
+  floor.positions = {{-3, 0, -3}, {-3, 0, 3}, {3, 0, 3}, {3, 0, -3}};
+  floor.triangles = {{0, 1, 2}, {0, 2, 3}};
+  Asset target = personAnd(floor);
+  TransferAssetOptions options = fewRounds();
+  options.colors.at = [](Index, const Vec3&) { return Vec3f(0, 0.5f, 0); };
+  transferred(liftedPerson(), target, options);
+  const gltf::Primitive &person = target.document.meshes[0].primitives[0],
+                        &ground = target.document.meshes[1].primitives[0];
+  EXPECT_EQ(person.targets.size(), 1u);
+  EXPECT_TRUE(ground.targets.empty());
+  EXPECT_TRUE(person.attributes.find("COLOR_0"));
+  EXPECT_FALSE(ground.attributes.find("COLOR_0"));
+  const auto colorOf = [&](const gltf::Primitive& primitive) {
+    return target.document.materials[primitive.material.value()].pbrMetallicRoughness->baseColorFactor.value();
+  };
+  EXPECT_EQ(colorOf(person), Vec4::Ones());
+  EXPECT_EQ(colorOf(ground), Vec4(1, 0, 0, 1));
+}
+
+// The inside of the head.
+TEST(TransferAssetTest, AnInnerShellTakesTheShapesOfTheOuterOne) {
+  TriMesh outer, inner;
+  const testing::PersonJoint& head = testing::personJoints()[2];
+  testing::addCapsule(outer, head.place, head.end, head.radius);
+  testing::addCapsule(inner, head.place, head.end, 0.97 * head.radius);
+  Asset target = personAnd(inner);
+  transferred(liftedPerson(), target);
+  const auto offsetsOf = [&](Index mesh) {
+    const gltf::Primitive& primitive = target.document.meshes[mesh].primitives[0];
+    return readFloats(target, primitive.targets.at(0).find("POSITION").value());
+  };
+  const std::vector<float> ofPerson = offsetsOf(0), ofInner = offsetsOf(1);
+  const std::vector<Vec3f>& positions = capsulePerson().mesh.positions;
+  const auto first = std::find(positions.begin(), positions.end(), outer.positions[0]) - positions.begin();
+  ASSERT_LT(static_cast<std::size_t>(first), positions.size());
+  Index alike = 0;  // the others lie where the spine comes through
+  for (Index v = 0; v < inner.vertexCount(); ++v) {
+    const auto own = ofInner.begin() + 3 * std::ptrdiff_t{v};
+    alike += std::equal(own, own + 3, ofPerson.begin() + 3 * (first + std::ptrdiff_t{v})) ? 1 : 0;
+  }
+  EXPECT_GT(alike, 0.9 * inner.vertexCount());
+}
+
+// What is on the back is bound four metres off in both.
+TEST(TransferAssetTest, SkinsOfOtherPosesAreBroughtToOne) {
+  TriMesh bag;
+  testing::addCapsule(bag, {0, 1.1, -0.3}, {0, 1.3, -0.3}, 0.1);
+  Asset source = personAnd(bag), target = personAnd(bag);
+  for (Asset* asset : {&source, &target}) {
+    const AssetSkeleton read = readSkeleton(*asset);
+    testing::bindElsewhere(*asset, 1, {read.jointNode[*read.skeleton.find("leftUpperLeg")]}, Vec3f(0, 0, 4));
+  }
+  transferred(source, target);
+  const AssetSkeleton read = readSkeleton(target);
+  const Geometry geometry = collectGeometry(target);
+  const SkinWeights weights = readWeights(target, geometry, read);
+  const Index first = capsulePerson().mesh.vertexCount();
+  for (Index v = 0; v < bag.vertexCount(); ++v) {
+    EXPECT_LT((geometry.positions[first + v] - bag.positions[v]).norm(), 1e-4f) << v;
+    EXPECT_EQ(read.skeleton.joints[weights.jointsOf(first + v)[0]].name, "leftUpperLeg") << v;
+  }
+}
+
+// The file's own vertices are of half the size, its joints where the shape has the body.
+TEST(TransferAssetTest, TheTargetIsReadAsItsShapesHaveIt) {
+  RiggedBody person = capsulePerson();
+  std::vector<float> offsets;
+  for (Vec3f& p : person.mesh.positions) {
+    p *= 0.5f;
+    offsets.insert(offsets.end(), {p.x(), p.y(), p.z()});
+  }
+  Asset target = sceneOf(person.mesh, "small.glb");
+  target.document.meshes[0].primitives[0].targets.emplace_back().set(
+      "POSITION", addFloatAccessor(target, offsets, 3, kVertexTarget, true));
+  target.document.nodes[0].weights = {1};
+  attachRig(target, collectGeometry(target), person.skeleton, person.weights);
+  transferred(riggedPerson(), target);
+  const std::vector<Vec3> found = placesIn(target), wanted = placesIn(riggedPerson());
+  for (std::size_t j = 0; j < wanted.size(); ++j) EXPECT_LT((found[j] - wanted[j]).norm(), 0.005) << j;
 }
 
 // Half as large again, with a rig of its own.

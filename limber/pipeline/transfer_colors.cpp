@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -82,15 +83,62 @@ std::map<Index, Pictured> picturesOf(const Asset& target, const Geometry& geomet
   return pictures;
 }
 
-// Each texel as a point of the target, projected onto the source.
+// By vertex of the target's Geometry.
+std::vector<bool> isSurroundings(const FigureSurface& figure) {
+  std::vector<bool> ofWelded(figure.prepared.mesh.positions.size(), false), ofVertices;
+  for (const Index v : figure.surroundings) ofWelded[v] = true;
+  for (const Index v : figure.prepared.weldedVertex) ofVertices.push_back(ofWelded[v]);
+  return ofVertices;
+}
+
+// The geometry with those primitives alone that are to be coloured: all but the surroundings'. One of these that has
+// its material in common with the others gets a copy for itself.
+Geometry withoutSurroundings(Asset& target, const Geometry& geometry, const std::vector<bool>& isAround) {
+  Geometry result{geometry.positions, geometry.triangles, {}};
+  std::set<std::pair<Index, Index>> colored;
+  std::set<Index> materials;
+  const auto primitiveOf = [&](const PrimitiveInstance& instance) -> gltf::Primitive& {
+    return target.document.meshes[instance.mesh].primitives[instance.primitive];
+  };
+  for (const PrimitiveInstance& instance : geometry.instances) {
+    const auto first = isAround.begin() + instance.firstVertex, end = first + instance.vertexCount;
+    if (first != end && std::find(first, end, false) == end) continue;
+    colored.insert({instance.mesh, instance.primitive});
+    if (const std::optional<Index>& material = primitiveOf(instance).material) materials.insert(*material);
+  }
+  std::map<Index, Index> copies;
+  for (const PrimitiveInstance& instance : geometry.instances) {
+    if (colored.count({instance.mesh, instance.primitive}) > 0) {
+      result.instances.push_back(instance);
+      continue;
+    }
+    std::optional<Index>& material = primitiveOf(instance).material;
+    if (!material || materials.count(*material) == 0) continue;
+    const auto [copy, isNew] = copies.try_emplace(*material, 0);
+    if (isNew) {
+      gltf::Material same = target.document.materials[*material];
+      copy->second = addElement(target.document.materials, std::move(same));
+    }
+    material = copy->second;
+  }
+  return result;
+}
+
+// Each texel as a point of the target, projected onto the source; white for surroundings.
 std::vector<Vec3f> colorsOf(const Pictured& pictured, const LaidColors& colors, const SurfaceProjector& projector,
-                            const PreparedMesh& prepared, std::span<const Vec3> normals) {
+                            const PreparedMesh& prepared, std::span<const Vec3> normals,
+                            const std::vector<bool>& isAround) {
   std::vector<Vec3f> result(pictured.texels.size());
   parallelFor(result.size(), kTexelGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
+      const Triangle& corners = pictured.triangles[pictured.texels[i].triangle];
+      if (isAround[corners[0]]) {
+        result[i].setOnes();
+        continue;
+      }
       Vec3 position = Vec3::Zero(), normal = Vec3::Zero();
       for (std::size_t k = 0; k < 3; ++k) {
-        const Index v = prepared.weldedVertex[pictured.triangles[pictured.texels[i].triangle][k]];
+        const Index v = prepared.weldedVertex[corners[k]];
         const double weight = pictured.texels[i].weights[static_cast<Eigen::Index>(k)];
         position += weight * prepared.mesh.position(v);
         normal += weight * normals[v].normalized();
@@ -103,9 +151,12 @@ std::vector<Vec3f> colorsOf(const Pictured& pictured, const LaidColors& colors, 
 
 }  // namespace
 
-void transferColors(const LaidSource& source, const ColorTransfer& colors, Asset& target, const Geometry& geometry,
-                    const PreparedMesh& prepared) {
+void transferColors(const LaidSource& source, const ColorTransfer& colors, Asset& target, const Geometry& whole,
+                    const FigureSurface& figure) {
+  const PreparedMesh& prepared = figure.prepared;
   const LaidColors laid(source, colors.at);
+  const std::vector<bool> isAround = isSurroundings(figure);
+  const Geometry geometry = withoutSurroundings(target, whole, isAround);
   addMissingMaterials(target, geometry);
   std::map<Index, Pictured> pictures;
   if (colors.picture) pictures = picturesOf(target, geometry, colors.pictureSize);
@@ -114,6 +165,7 @@ void transferColors(const LaidSource& source, const ColorTransfer& colors, Asset
 
   std::vector<Vec3f> ofWelded, ofVertices;
   for (const SurfacePoint& point : source.rig.points) ofWelded.push_back(laid.at(point));
+  for (const Index v : figure.surroundings) ofWelded[v].setOnes();
   for (const Index v : prepared.weldedVertex) ofVertices.push_back(ofWelded[v]);
   setVertexColors(target, geometry, ofVertices, pictured);
   if (pictures.empty()) return;
@@ -126,7 +178,7 @@ void transferColors(const LaidSource& source, const ColorTransfer& colors, Asset
   const TriMesh facing = facingOutwards(prepared.mesh);
   const std::vector<Vec3> normals = areaNormals<Vec3f>(facing.positions, facing.triangles);
   for (const auto& [material, picture] : pictures) {
-    const std::vector<Vec3f> ofTexels = colorsOf(picture, laid, projector, prepared, normals);
+    const std::vector<Vec3f> ofTexels = colorsOf(picture, laid, projector, prepared, normals, isAround);
     const std::vector<Vec3f> pixels = pictureOf(picture.texels, ofTexels, colors.pictureSize);
     setBaseColorPicture(target, material, colors.picture(colors.pictureSize, pixels));
   }

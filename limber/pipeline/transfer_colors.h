@@ -4,8 +4,8 @@
 #include <functional>
 #include <span>
 
-#include "limber/mesh/prepare.h"
 #include "limber/pipeline/vertex_colors.h"
+#include "limber/surface/figure_surface.h"
 #include "limber/transfer/rig_transfer.h"
 
 namespace limber {
@@ -27,10 +27,11 @@ struct LaidSource {
 
 // Each point of the target has the colour of the source's point that it takes after (SurfaceProjector): in a texture
 // where the target's materials have texture coordinates in which nothing lies on anything else (texelsOf), else at its
-// vertices (setVertexColors).
-// prepared  the target's Geometry as the transfer took it
+// vertices (setVertexColors). Primitives of the figure's surroundings stay as they are; where the figure's have some of
+// them, these become white.
+// figure  of the target's Geometry, as the transfer took it
 // Cost: for each pixel of a texture two nearest points.
 void transferColors(const LaidSource& source, const ColorTransfer& colors, Asset& target, const Geometry& geometry,
-                    const PreparedMesh& prepared);
+                    const FigureSurface& figure);
 
 }  // namespace limber

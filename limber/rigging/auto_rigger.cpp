@@ -1,10 +1,9 @@
 #include "limber/rigging/auto_rigger.h"
 
-#include <algorithm>
 #include <optional>
-#include <vector>
 
 #include "limber/core/names.h"
+#include "limber/mesh/loose_vertices.h"
 #include "limber/rigging/curve_skeleton_rigger.h"
 #include "limber/rigging/prop_rigger.h"
 #include "limber/rigging/sphere_mesh_rigger.h"
@@ -14,27 +13,10 @@ namespace limber {
 
 namespace {
 
-// The mesh without its loose vertices; nothing where it has none.
-std::optional<TriMesh> withoutLooseVertices(const TriMesh& mesh) {
-  std::vector<Index> kept(mesh.vertexCount(), kNoIndex);
-  for (const Triangle& t : mesh.triangles) {
-    for (const Index v : t) kept[v] = 0;
-  }
-  if (mesh.triangles.empty() || std::find(kept.begin(), kept.end(), kNoIndex) == kept.end()) return std::nullopt;
-  TriMesh result;
-  for (Index v = 0; v < kept.size(); ++v) {
-    if (kept[v] == kNoIndex) continue;
-    kept[v] = result.vertexCount();
-    result.positions.push_back(mesh.positions[v]);
-  }
-  for (const Triangle& t : mesh.triangles) result.triangles.push_back({kept[t[0]], kept[t[1]], kept[t[2]]});
-  return result;
-}
-
 template <AutoRigger method>
 AutoRig rigSurface(const TriMesh& mesh, const RigOptions& options, Progress& progress) {
-  const std::optional<TriMesh> surface = withoutLooseVertices(mesh);
-  return method(surface ? *surface : mesh, options, progress);
+  const std::optional<BareSurface> surface = withoutLooseVertices(mesh);
+  return method(surface ? surface->mesh : mesh, options, progress);
 }
 
 constexpr RiggerMethod kMethods[] = {

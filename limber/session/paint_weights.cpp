@@ -18,10 +18,8 @@ constexpr double kBeside = 1e-6;  // that barycentric coordinates may lie outsid
 
 TriMesh weldedMesh(const Geometry& geometry, const std::vector<Index>& weldedVertex) {
   TriMesh mesh;
-  for (std::size_t s = 0; s < weldedVertex.size(); ++s) {
-    const std::size_t w = weldedVertex[s];
-    if (mesh.positions.size() <= w) mesh.positions.resize(w + 1);
-    mesh.positions[w] = geometry.positions[s];
+  for (std::size_t s = 0; s < weldedVertex.size(); ++s) {  // a place is first met at its lowest vertex
+    if (weldedVertex[s] == mesh.positions.size()) mesh.positions.push_back(geometry.positions[s]);
   }
   for (const Triangle& t : geometry.triangles) {
     mesh.triangles.push_back({weldedVertex[t[0]], weldedVertex[t[1]], weldedVertex[t[2]]});

@@ -135,6 +135,23 @@ TEST(PaintWeights, SeamsGetEqualWeights) {
   }
 }
 
+// Two triangles of grids of their own: a place is that of its lowest vertex.
+TEST(PaintSurface, APlaceIsThatOfItsLowestVertex) {
+  auto geometry = std::make_shared<Geometry>();
+  geometry->positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1.01f, 0, 0}, {1, 1, 0}, {0, 1.01f, 0}};
+  geometry->triangles = {{0, 1, 2}, {3, 4, 5}};
+  for (const Index part : {0, 1}) {
+    PrimitiveInstance& instance = geometry->instances.emplace_back();
+    instance.firstVertex = 3 * part;
+    instance.vertexCount = 3;
+    instance.quantisation = 0.02;
+  }
+  const PaintSurface surface(geometry);
+  const TriMesh& mesh = surface.distance().mesh();
+  ASSERT_EQ(mesh.vertexCount(), 4u);
+  for (Index w = 0; w < 4; ++w) EXPECT_EQ(mesh.positions[w], geometry->positions[surface.sources(w).front()]) << w;
+}
+
 TEST(PaintWeights, BothSidesArePaintedAlike) {
   Session session = personToPaint();
   PaintWeights paint = stroke(session, "leftUpperArm", "leftLowerArm", PaintMode::kReplace);

@@ -1,8 +1,11 @@
 #include "limber/skinning/weight_method.h"
 
+#include <optional>
 #include <string>
 
 #include "limber/core/names.h"
+#include "limber/mesh/bvh.h"
+#include "limber/mesh/loose_vertices.h"
 #include "limber/skinning/bone_distance.h"
 #include "limber/skinning/bone_heat.h"
 #include "limber/skinning/bounded_biharmonic.h"
@@ -13,10 +16,27 @@ namespace limber {
 
 namespace {
 
-// The method, and what holds for all of them.
+// What the surface alone got, for the vertices of a mesh with loose ones, which take that of the nearest vertex of it.
+WeightResult withLooseVertices(WeightResult result, const BareSurface& surface, const TriMesh& mesh) {
+  std::vector<Index> from(mesh.vertexCount(), kNoIndex);
+  for (Index v = 0; v < surface.source.size(); ++v) from[surface.source[v]] = v;
+  const Bvh bvh(surface.mesh);
+  for (Index v = 0; v < from.size(); ++v) {
+    if (from[v] == kNoIndex) from[v] = nearestCorner(surface.mesh, bvh.nearestPoint(mesh.position(v)));
+  }
+  result.weights = expandWeights(result.weights, from);
+  for (Index& v : result.bridged) v = surface.source[v];
+  return result;
+}
+
+// The method, and what holds for all of them: loose vertices are no pieces, and change nothing of the surface's
+// weights.
 template <WeightFunction method>
 WeightResult computed(const TriMesh& mesh, std::span<const Bone> bones, const WeightOptions& options,
                       Progress& progress) {
+  if (const std::optional<BareSurface> surface = withoutLooseVertices(mesh)) {
+    return withLooseVertices(computed<method>(surface->mesh, bones, options, progress), *surface, mesh);
+  }
   WeightResult result = method(mesh, bones, options, progress);
   if (options.pieces != PieceMode::kSoft) holdSpecks(mesh, result.weights);
   return result;

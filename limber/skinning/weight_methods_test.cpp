@@ -98,6 +98,22 @@ TEST(WeightMethods, OfTheTableLeaveNoVertexOut) {
   for (const WeightMethod& method : weightMethods()) expectWhole(method, bar, 4);
 }
 
+// A floor that was taken out of the model leaves its vertices: they are no pieces of the body.
+TEST(WeightMethods, LooseVerticesChangeNothing) {
+  const TriMesh bar = testing::moved(testing::icosphere(2), {0.5f, 0.1f, 0.1f}, Vec3f::Zero());
+  TriMesh mesh = bar;
+  for (int i = 0; i < 500; ++i) mesh.positions.push_back({0.002f * float(i) - 0.5f, -0.2f, 0});
+  for (const WeightMethod& method : weightMethods()) {
+    const WeightResult alone = madeBy(method, bar, 4), beside = madeBy(method, mesh, 4);
+    const std::size_t count = alone.weights.joints.size();
+    EXPECT_TRUE(std::equal(alone.weights.joints.begin(), alone.weights.joints.end(), beside.weights.joints.begin()));
+    EXPECT_TRUE(std::equal(alone.weights.weights.begin(), alone.weights.weights.end(), beside.weights.weights.begin()));
+    EXPECT_EQ(beside.weights.joints.size(), count + 4 * 500);
+    EXPECT_EQ(alone.warnings.items().size(), beside.warnings.items().size()) << method.name;
+    expectWhole(method, mesh, 4);
+  }
+}
+
 TEST(WeightMethods, GiveTheSameBitsForAnyNumberOfThreads) {
   const TriMesh ball = testing::moved(testing::icosphere(3), {0.5f, 0.3f, 0.2f}, Vec3f::Zero());
   for (const WeightMethod& method : quickMethods()) {

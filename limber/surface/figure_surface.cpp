@@ -5,6 +5,7 @@
 #include <numeric>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <utility>
 
 #include <Eigen/Eigenvalues>
@@ -31,9 +32,11 @@ constexpr double kMaxPedestal = 0.5;         // height of a pedestal, of that of
 constexpr double kSole = 0.03;               // of the figure's height, from its lowest point: what stands on a pedestal
 constexpr double kMinStride = 0.15;          // of the extent of the feet, the gap between them
 constexpr std::size_t kSampled = 200;        // vertices or triangles of a component
+constexpr double kStrayArea = 0.01;          // of the figure's largest component: smaller ones may lie anywhere
 
 constexpr std::size_t kMaxShells = 32;      // components, the largest
 constexpr double kMinCopyArea = 0.5;        // of the outer surface
+constexpr double kMaxCopyArea = 1.1;        // of the outer surface: what has more is no copy, but a figure in a box
 constexpr double kMinEnclosed = 0.9;        // of a shell's vertices within the outer surface
 constexpr double kMaxShellDistance = 0.03;  // sizes of the outer surface, of a shell from it in the mean
 constexpr double kMaxBareDistance = 0.06;   // sizes of the outer surface, from it to a shell below it
@@ -134,8 +137,10 @@ struct Figure {
   bool isHollow = false;
 
   Figure(const TriMesh& mesh, std::span<const Component> components) {
-    double volume = 0;
+    double volume = 0, largest = 0;
+    for (const Component& component : components) largest = std::max(largest, component.area);
     for (const Component& component : components) {
+      if (component.area < kStrayArea * largest) continue;
       vertices.insert(vertices.end(), component.vertices.begin(), component.vertices.end());
       box.add(component.box.min);
       box.add(component.box.max);
@@ -245,8 +250,13 @@ bool leavesGap(std::vector<Reach> reaches) {
   return widest > kMinStride * (end - reaches.front().first);
 }
 
+bool isStep(const TriMesh& mesh, const Component& component) {
+  const Backdrop backdrop(mesh, component);
+  return backdrop.isFlat || backdrop.isConvex;
+}
+
 // Whether all others stand on a component with feet, +Y up.
-bool isPedestal(const TriMesh& mesh, const Component& component, std::span<const Component> others) {
+bool standsOn(const TriMesh& mesh, const Component& component, std::span<const Component> others) {
   const Figure figure(mesh, others);
   const double height = figure.box.size().y(), top = component.box.max.y();
   if (!figure.isHollow || component.box.size().y() > kMaxPedestal * height) return false;
@@ -265,9 +275,7 @@ bool isPedestal(const TriMesh& mesh, const Component& component, std::span<const
       if (!isWithin(sole, component.box, 0)) return false;
     }
   }
-  if (!leavesGap(std::move(x)) && !leavesGap(std::move(z))) return false;
-  const Backdrop backdrop(mesh, component);
-  return backdrop.isFlat || backdrop.isConvex;
+  return leavesGap(std::move(x)) || leavesGap(std::move(z));
 }
 
 // The lowest component, where all others lie above it.
@@ -292,22 +300,23 @@ std::vector<Component> surroundingsAmong(const TriMesh& mesh, std::vector<Compon
   const auto count = static_cast<std::ptrdiff_t>(backdropsAmong(mesh, components));
   std::vector<Component> surroundings(components.begin(), components.begin() + count);
   components.erase(components.begin(), components.begin() + count);
-  while (components.size() > 1) {  // steps of a pedestal
-    const std::optional<std::size_t> lowest = lowestOf(components);
+  std::vector<Component> steps, others = components;  // of a pedestal, from below
+  while (others.size() > 1) {
+    const std::optional<std::size_t> lowest = lowestOf(others);
     if (!lowest) break;
-    const Component pedestal = components[*lowest];
-    std::vector<Component> others = components;
+    steps.push_back(others[*lowest]);
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(*lowest));
-    if (!isPedestal(mesh, pedestal, others)) break;
-    surroundings.push_back(pedestal);
-    components = std::move(others);
+    if (!isStep(mesh, steps.back())) break;
+    if (!standsOn(mesh, steps.back(), others)) continue;
+    surroundings.insert(surroundings.end(), steps.begin(), steps.end());
+    break;
   }
   return surroundings;
 }
 
 // Whether one component is a copy of another one's surface within it.
 bool isInnerShell(const TriMesh& mesh, const Component& inner, const Component& outer) {
-  if (inner.area < kMinCopyArea * outer.area || inner.box.diagonal() > outer.box.diagonal()) return false;
+  if (inner.area < kMinCopyArea * outer.area || inner.area > kMaxCopyArea * outer.area) return false;
   if (!isWithin(inner.box, outer.box, 0)) return false;
   const TriMesh outerMesh = meshOf(mesh, outer);
   const WindingNumber winding(outerMesh);
@@ -365,6 +374,20 @@ std::vector<Index> weldedFrom(const std::vector<bool>& isOfSource, const Prepare
   return vertices;
 }
 
+// Beyond a figure alone all vertices of a floor would count as far away from it.
+Warnings withFarVerticesOf(const Warnings& whole, const Warnings& figure) {
+  constexpr std::string_view kKind = "far-vertices";
+  Warnings result;
+  for (const Warnings* from : {&whole, &figure}) {
+    for (const Warning& warning : from->items()) {
+      if ((warning.kind == kKind) == (from == &whole)) {
+        result.add(warning.kind, warning.message, warning.where, warning.count);
+      }
+    }
+  }
+  return result;
+}
+
 void warnOfFaces(const MendedFaces& mended, Warnings& warnings) {
   warnings.add("repeated-faces", "triangles that lie on an earlier one count once", {}, mended.repeated);
   warnings.add(
@@ -399,7 +422,8 @@ FigureSurface figureSurface(std::span<const Vec3f> positions, std::span<const Tr
     for (const Triangle& t : triangles) {
       if (!isAround[t[0]]) figure.push_back(t);
     }
-    prepared = prepareMesh(positions, figure, stored);
+    const Warnings before = std::exchange(prepared, prepareMesh(positions, figure, stored)).warnings;
+    prepared.warnings = withFarVerticesOf(before, prepared.warnings);
     mended = mendFaces(prepared.mesh);
     result.surroundings = weldedFrom(isAround, prepared);
     prepared.warnings.add("surroundings",

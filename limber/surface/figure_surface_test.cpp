@@ -94,6 +94,15 @@ TEST(FigureSurface, FloorIsNoPartOfTheFigure) {
   }
 }
 
+TEST(FigureSurface, FloorIsFoundBesideASpeck) {
+  const TriMesh body = blockBody();
+  TriMesh mesh = testing::joined(body, floorMesh(40));
+  mesh = testing::joined(mesh, boxMesh({0.05f, 0.05f, 0.05f}, {24, -1.5f, 0}));
+  const FigureSurface surface = surfaceOf(mesh);
+  EXPECT_EQ(surface.surroundings.size(), 4u);
+  EXPECT_EQ(countOf(surfaceOf(testing::joined(body, floorMesh(500))), "far-vertices"), 0u);
+}
+
 TEST(FigureSurface, SlabAndWallAreNoPartOfTheFigure) {
   const TriMesh body = blockBody();
   TriMesh mesh = testing::joined(body, boxMesh({40, 1, 40}, {0, -1.5f, 0}));
@@ -108,6 +117,10 @@ TEST(FigureSurface, PedestalBelowFeetIsNoPartOfTheFigure) {
   const FigureSurface surface = surfaceOf(testing::joined(body, pedestal));
   EXPECT_EQ(surface.surroundings.size(), 8u);
   expectBodyAlone(surface, body);
+  const FigureSurface stepped = surfaceOf(
+      testing::joined(testing::joined(body, boxMesh({9, 1, 6}, {0, -1.53f, 0})), boxMesh({12, 1, 8}, {0, -2.53f, 0})));
+  EXPECT_EQ(stepped.surroundings.size(), 16u);
+  expectBodyAlone(stepped, body);
   // A lamp stands on its foot with one pole.
   const TriMesh lamp = testing::joined(boxMesh({1, 9, 1}, {0, 3.5f, 0}), boxMesh({9, 1, 1}, {0, 8.5f, 0}));
   EXPECT_TRUE(surfaceOf(testing::joined(lamp, pedestal)).surroundings.empty());
