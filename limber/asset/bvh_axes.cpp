@@ -71,6 +71,12 @@ bool standsAlongZ(std::span<const BvhJoint> joints) {
   return restsAlong(UpAxis::kZ, joints, namedEnds(joints));
 }
 
+bool headsLieAhead(std::span<const BvhJoint> joints, const BvhEnds& ends) {
+  if (!ends.known()) return false;
+  const Vec3 upwards = ends.upwards(restPositionsOf(joints));
+  return upwards.z() > std::abs(upwards.y()) && upwards.z() <= kUprightSlope * std::hypot(upwards.x(), upwards.y());
+}
+
 void HeadDirections::add(const Vec3& upwards) {
   ++frames_;
   for (std::size_t axis = 0; axis < along_.size(); ++axis) {

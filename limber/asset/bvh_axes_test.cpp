@@ -314,5 +314,17 @@ TEST(BvhAxes, ARestPoseAlongOneAxisTellsNothing) {
   EXPECT_FALSE(standsAlongZ(fewJoints({0.6, 0, 0.1}, {0.8, 0, -0.1}, {0.8, 0, -0.1})));
 }
 
+// Those of a beast lie before its feet in all frames, too: nothing is to be turned.
+TEST(BvhAxes, HeadsThatLieAheadTellNothing) {
+  const auto liesAhead = [](const Vec3& head, const Vec3& foot) {
+    const std::vector<BvhJoint> joints = fewJoints(head, foot, foot - Vec3(2 * foot.x(), 0, 0));
+    return headsLieAhead(joints, namedEnds(joints));
+  };
+  EXPECT_TRUE(liesAhead({0, 0.2, 0.5}, {0.1, -0.3, -0.6}));
+  EXPECT_FALSE(liesAhead({0, 0.6, 0.02}, {0.1, -0.8, 0}));
+  EXPECT_FALSE(liesAhead({0, 0.02, 0.6}, {0.1, 0, -0.8}));
+  EXPECT_FALSE(liesAhead({0, 0.2, -0.5}, {0.1, -0.3, 0.6}));
+}
+
 }  // namespace
 }  // namespace limber

@@ -299,7 +299,7 @@ class BvhReader {
       expected = up = *options_.up;
     } else {
       if (standsAlongZ(joints)) expected = UpAxis::kZ;
-      const FramesUp frames = upOfFrames(postures, expected);
+      const FramesUp frames = headsLieAhead(joints, ends) ? FramesUp{expected, false} : upOfFrames(postures, expected);
       up = frames.axis;
       if (frames.ambiguous) warnOfAmbiguity(expected);
     }

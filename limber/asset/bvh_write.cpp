@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
 #include <limits>
 #include <string>
@@ -12,12 +13,16 @@
 
 #include "limber/core/known_error.h"
 #include "limber/core/numbers.h"
+#include "limber/core/printable.h"
 #include "limber/skeleton/chain.h"
 
 namespace limber {
 
 namespace {
 
+constexpr double kDenseRate = 60, kMostRate = 240;                  // frames a second
+constexpr double kTimeRounding = 2e-6;                              // of a time in single precision
+constexpr std::uint64_t kMostJointFrames = std::uint64_t{1} << 24;  // joints x frames of a file: some 500 MB of text
 constexpr std::string_view kEndSite = "_end";
 constexpr double kMoved = 1e-6;  // of the skeleton's size: a joint farther from its offset gets position channels
 
@@ -54,13 +59,39 @@ struct BvhJointFrame {
   Mat3 rotation = Mat3::Identity();  // likewise
 };
 
+// The clip's rate, or the least multiple of it at which all keys are frames; where there is none, at least kDenseRate.
+double rateOfFrames(const Motion& motion, std::size_t number) {
+  constexpr int kMostFiner = 16;
+  constexpr double kOnFrame = 0.02;  // of a frame
+  const double rate = frameRateOf(motion, number), finest = std::max(rate, kDenseRate);
+  std::vector<float> times;
+  const auto addTimes = [&](const auto& tracks) {
+    for (const auto& track : tracks) times.insert(times.end(), track.times.begin(), track.times.end());
+  };
+  const Clip& clip = motion.clips[number];
+  addTimes(clip.translations);
+  addTimes(clip.rotations);
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  if (times.size() > 2) times.pop_back();  // a clip may end between two frames
+  for (int finer = 1; finer <= kMostFiner && finer * rate <= kMostRate; ++finer) {
+    const auto isFrame = [&](float time) {
+      const double frames = double{time} * finer * rate;
+      return std::abs(frames - std::round(frames)) <= kOnFrame + kTimeRounding * frames;
+    };
+    if (std::all_of(times.begin(), times.end(), isFrame)) return finer * rate;
+  }
+  return rate * std::ceil(finest / rate);
+}
+
 class BvhWriter {
  public:
   BvhWriter(const Motion& motion, const BvhWriteOptions& options)
       : skeleton_(motion.skeleton), clip_(motion.clips[options.clip]), unit_(options.metresPerUnit) {
-    const double rate = options.fps.value_or(frameRateOf(motion, options.clip));
+    const double rate = options.fps ? *options.fps : rateOfFrames(motion, options.clip);
     frames_ = frameCount(clip_, rate);
     secondsPerFrame_ = 1 / rate;
+    checkSize();
     children_ = childrenOf(skeleton_);
     restGlobals_ = restGlobals(skeleton_);
     for (const Affine& global : restGlobals_) toRest_.push_back(decompose(global).rotation.inverse());
@@ -101,11 +132,19 @@ class BvhWriter {
   // As many digits as single precision has.
   void outLength(double length) {
     if (!(std::abs(length) <= std::numeric_limits<float>::max())) {
-      throw Error(ErrorCode::kLimit, "a joint is further away than a BVH can say", clip_.name);
+      throw Error(ErrorCode::kLimit, "a joint is further away than a BVH can say", shortened(clip_.name));
     }
     int decimals = kLengthDigits;
     for (double power = 1; decimals > 0 && std::abs(length) >= power; power *= 10) --decimals;
     outNumber(length, decimals);
+  }
+
+  // Throws before memory or time is asked for.
+  void checkSize() const {
+    const std::uint64_t joints = skeleton_.jointCount();
+    if (joints * frames_ <= kMostJointFrames) return;
+    throw Error(ErrorCode::kLimit, fmt::format("{} joints in {} frames are too many for a BVH file", joints, frames_),
+                fmt::format("clip '{}'", shortened(clip_.name)), "choose a lower --fps or a part of the clip");
   }
 
   void findEnds() {
@@ -121,7 +160,7 @@ class BvhWriter {
       if (joint.name.find_first_of("\r\n{}") != std::string::npos) {
         throw KnownError(ErrorKind::kNoBvhName,
                          {ErrorCode::kBadArgument, "its name cannot stand in a BVH file",
-                          fmt::format("joint '{}'", joint.name), "rename the joint"},
+                          fmt::format("joint '{}'", shortened(joint.name)), "rename the joint"},
                          {{"joint", joint.name}});
       }
     }

@@ -9,9 +9,10 @@
 namespace limber {
 
 struct BvhWriteOptions {
-  std::size_t clip = 0;       // which of the motion's
-  double metresPerUnit = 1;   // lengths are divided by it; a BVH does not say its unit
-  std::optional<double> fps;  // frames a second; none: the clip's
+  std::size_t clip = 0;      // which of the motion's
+  double metresPerUnit = 1;  // lengths are divided by it; a BVH does not say its unit
+  // Frames a second; none: those of the clip, or the least multiple of them at which its keys are frames, too.
+  std::optional<double> fps;
 };
 
 // The text of a BVH file: one clip, sampled from its start to its end. Joint positions come out as they are whatever
@@ -20,7 +21,8 @@ struct BvhWriteOptions {
 // the one before. Leaves named "..._end" without a track become end sites; other leaves get one without length.
 // Changing scales are not written (BVH has none), only what they do to positions.
 //
-// Throws Error kBadArgument where there is no such clip, no joint, or a name holds a line break or brace.
+// Throws Error kBadArgument where there is no such clip, no joint, or a name holds a line break or brace; kLimit
+// where joints times frames are more than 2^24.
 Bytes writeBvh(const Motion& motion, const BvhWriteOptions& options = {});
 
 }  // namespace limber

@@ -169,6 +169,23 @@ TEST(WriteBvh, ALaterClipKeepsItsRate) {
   EXPECT_NE(written.find("Frame Time: 0.02\n"), std::string::npos) << written.substr(written.find("Frame"), 60);
 }
 
+TEST(WriteBvh, KeysAreFramesWhereverTheClipBegins) {
+  Motion motion = randomMotion(6, false);
+  Clip& clip = motion.clips[0];
+  clip = resampleClip(clip, 12);
+  const auto delay = [](auto& tracks) {
+    for (auto& track : tracks) {
+      for (float& time : track.times) time += 1.0f / 24;
+    }
+  };
+  delay(clip.translations);
+  delay(clip.rotations);
+  motion.framesPerSecond = 12;
+  const Motion back = readBvh(asBytes(text(motion)), "made.bvh", {1, UpAxis::kY});
+  EXPECT_NEAR(back.framesPerSecond, 24, 1e-4);
+  EXPECT_LT(largestDistance(motion, back, 24), 1e-5);
+}
+
 TEST(WriteBvh, ResamplesOnRequest) {
   Motion motion = randomMotion(6, false);
   const Motion back = readBvh(asBytes(text(motion, {0, 1, 60})), "made.bvh", {1, UpAxis::kY});
@@ -189,6 +206,20 @@ TEST(WriteBvh, RefusesWhatABvhCannotSay) {
   far.skeleton.joints[0].rest.translation = Vec3(3e38, 0, 0);
   far.skeleton.joints[1].rest.translation = Vec3(3e38, 0, 0);
   EXPECT_THROW(writeBvh(far, {0, 1e-3, {}}), Error);
+}
+
+TEST(WriteBvh, RefusesMoreFramesThanATextShouldHave) {
+  Motion motion = randomMotion(6, false);
+  motion.clips[0].name = std::string(1000, 'n');
+  const double rate = std::ceil((1 << 24) / (motion.clips[0].duration() * motion.skeleton.jointCount())) + 1;
+  try {
+    writeBvh(motion, {0, 1, rate});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::kLimit);
+    EXPECT_EQ(error.where(), "clip '" + std::string(100, 'n') + "...'");
+    EXPECT_NE(error.remedy().find("--fps"), std::string::npos);
+  }
 }
 
 TEST(WriteBvh, WritesADeepChain) {

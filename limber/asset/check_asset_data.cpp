@@ -11,6 +11,7 @@
 #include "limber/asset/check_asset.h"
 #include "limber/asset/document_errors.h"
 #include "limber/asset/extensions.h"
+#include "limber/core/printable.h"
 
 namespace limber {
 
@@ -18,10 +19,10 @@ namespace {
 
 // JOINTS_n of one primitive: 64 influences of a vertex. Programs write one or two.
 constexpr std::size_t kMaxInfluenceSets = 16;
-// What the attributes and morph targets of all primitives may take as numbers of four bytes, each time that they are
-// named: a small multiple of what the file stores, since it may store bytes, and a fixed sum, since primitives may
-// share accessors and these may be sparse or of zeros.
-constexpr std::uint64_t kMaxUnpackedPerByte = 4, kMaxUnpackedOfAny = std::uint64_t{1} << 30;
+// What the attributes, indices and morph targets of all primitives may take as numbers of four bytes, each time that
+// they are named: a small multiple of what the file stores, since it may store bytes, and a fixed sum, since primitives
+// may share accessors and these may be sparse or of zeros.
+constexpr std::uint64_t kMaxUnpackedPerByte = 8, kMaxUnpackedOfAny = std::uint64_t{192} << 20;
 
 // Neither NaN nor infinite, told from the exponent's bits so that the loop stays simple enough to run on vectors.
 bool allFinite(const std::uint8_t* data, std::size_t count) {
@@ -120,6 +121,7 @@ class DataChecker {
     for (const auto& target : primitive.targets) {
       for (const auto& [name, accessor] : target) add(accessor);
     }
+    if (primitive.indices) add(*primitive.indices);
     if (sets > kMaxInfluenceSets) {
       throw Error(ErrorCode::kLimit, fmt::format("has {} sets of weights, more than {}", sets, kMaxInfluenceSets),
                   where + ".attributes", "bind vertices to fewer joints");
@@ -127,8 +129,9 @@ class DataChecker {
     if (unpacked_ <= kMaxUnpackedOfAny + kMaxUnpackedPerByte * stored_) return;
     throw Error(
         ErrorCode::kLimit,
-        fmt::format("comes to more than {} MB of vertices and blend shapes, which {} bytes of buffers do not explain",
-                    unpacked_ >> 20, stored_),
+        fmt::format(
+            "comes to more than {} MB of vertices, indices and blend shapes, which {} bytes of buffers do not explain",
+            unpacked_ >> 20, stored_),
         where, "take blend shapes out, or do its meshes one by one");
   }
 
@@ -186,7 +189,7 @@ class DataChecker {
       return info;
     };
     for (const auto& [name, accessor] : primitive.attributes) {
-      const std::string place = fmt::format("{}.attributes.{}", where, name);
+      const std::string place = fmt::format("{}.attributes.{}", where, shortened(name));
       const AccessorInfo& info = checked(accessor, place);
       checkShape(name, info, 4, place);
       checkInfluences(name, info, place);
@@ -194,7 +197,7 @@ class DataChecker {
     }
     for (std::size_t t = 0; t < primitive.targets.size(); ++t) {
       for (const auto& [name, accessor] : primitive.targets[t]) {
-        const std::string place = fmt::format("{}.targets[{}].{}", where, t, name);
+        const std::string place = fmt::format("{}.targets[{}].{}", where, t, shortened(name));
         checkShape(name, checked(accessor, place), 3, place);
       }
     }
@@ -291,7 +294,7 @@ class DataChecker {
     const std::string where = fmt::format("nodes[{}]", index);
     std::optional<Index> count;
     for (const auto& [name, accessor] : instancingOf(node, where)) {
-      const std::string place = fmt::format("{}.extensions.{}.attributes.{}", where, kInstancingName, name);
+      const std::string place = fmt::format("{}.extensions.{}.attributes.{}", where, kInstancingName, shortened(name));
       requireElement(accessor, layouts_.size(), [&] { return place; });
       const AccessorInfo& info = layouts_[accessor].info;
       const bool rotation = name == "ROTATION";

@@ -296,8 +296,29 @@ std::string refusalOfShared(std::size_t vertices, std::size_t sets, std::size_t 
 TEST(CheckAsset, MemoryIsBoundedByWhatTheFileStores) {
   EXPECT_EQ(refusalOfShared(100, 16, 100), "");
   EXPECT_THAT(refusalOfShared(100, 17, 0), HasSubstr("17 sets of weights, more than 16"));
-  EXPECT_EQ(refusalOfShared(10000, 0, 8000), "");
-  EXPECT_THAT(refusalOfShared(10000, 0, 10000), HasSubstr("MB of vertices and blend shapes"));
+  EXPECT_EQ(refusalOfShared(10000, 0, 1600), "");
+  EXPECT_THAT(refusalOfShared(10000, 0, 2000), HasSubstr("MB of vertices, indices and blend shapes"));
+}
+
+TEST(CheckAsset, IndicesCountAsOftenAsTheyAreNamed) {
+  const auto refusalOf = [](int primitives) -> std::string {
+    GltfBuilder model;
+    const Index place = model.accessor(std::vector<float>(9), 5126, "VEC3", 3);
+    model.json["accessors"][place].update({{"min", Json::array({0, 0, 0})}, {"max", Json::array({0, 0, 0})}});
+    const Index indices = model.accessor(std::vector<std::uint8_t>(300'000), 5121, "SCALAR", 300'000);
+    const Json primitive = {{"attributes", {{"POSITION", place}}}, {"indices", indices}};
+    model.push("meshes", {{"primitives", std::vector<Json>(static_cast<std::size_t>(primitives), primitive)}});
+    model.push("nodes", {{"mesh", 0}});
+    try {
+      readAsset(model.glb(), "m");
+      return "";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::kLimit);
+      return error.what();
+    }
+  };
+  EXPECT_EQ(refusalOf(160), "");
+  EXPECT_THAT(refusalOf(200), HasSubstr("MB of vertices, indices and blend shapes"));
 }
 
 TEST(CheckAsset, EmptyDocumentsAreFine) {

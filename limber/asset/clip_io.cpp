@@ -124,6 +124,34 @@ void premultiply(const Affine& frame, NodeTracks& tracks) {
   }
 }
 
+std::string animationPlace(const gltf::Document& document, Index animation) {
+  const std::string& name = document.animations[animation].name;
+  return name.empty() ? fmt::format("animations[{}]", animation) : fmt::format("animation '{}'", name);
+}
+
+// Channels may share a sampler, and each gets a copy of its keys: a few kilobytes of them must not ask for gigabytes.
+void checkSharing(const Asset& asset, std::span<const Index> animations) {
+  constexpr std::uint64_t kMostShares = 16, kFreeNumbers = std::uint64_t{4} << 20;
+  std::uint64_t held = 0, read = 0;
+  for (const Asset::Buffer& buffer : asset.buffers) held += buffer.bytes.size() / sizeof(float);
+  const std::uint64_t most = std::max(kFreeNumbers, kMostShares * held);
+  for (const Index a : animations) {
+    const gltf::Animation& animation = asset.document.animations[a];
+    for (const gltf::AnimationChannel& channel : animation.channels) {
+      const std::string& path = channel.target.path;
+      if (!channel.target.node || (path != kTranslation && path != kRotation && path != kScale)) continue;
+      const gltf::AnimationSampler& sampler = animation.samplers[channel.sampler];
+      for (const Index accessor : {sampler.input, sampler.output}) {
+        const AccessorInfo info = accessorInfo(asset, accessor);
+        read += std::uint64_t{info.count} * info.components;
+      }
+      if (read <= most) continue;
+      throw Error(ErrorCode::kLimit, "shares its keys among so many channels that they take too much memory",
+                  animationPlace(asset.document, a), "export it with fewer clips or moving nodes");
+    }
+  }
+}
+
 // Reads the animations of one document.
 class ClipReader {
  public:
@@ -133,7 +161,9 @@ class ClipReader {
     for (const Affine& global : restGlobals(skeleton.skeleton)) box_.add(global.translation());
   }
 
-  Clip read(const gltf::Animation& animation) {
+  Clip read(Index number) {
+    const gltf::Animation& animation = asset_.document.animations[number];
+    number_ = number;
     Clip clip;
     clip.name = animation.name;
     nodes_.clear();
@@ -145,8 +175,9 @@ class ClipReader {
     std::vector<std::vector<float>> times(skeleton_.skeleton.jointCount());  // of those that are sampled
     for (Index j = 0; j < times.size(); ++j) {
       if (!isSampled(j)) continue;
-      times[j] = sampleTimes(skeleton_.jointNode[j]);
-      countSamples(times[j].size());
+      const std::vector<Index> chain = chainOf(skeleton_.jointNode[j]);
+      times[j] = sampleTimes(chain);
+      countSamples(times[j].size(), chain.size());
     }
     for (Index j = 0; j < times.size(); ++j) addJoint(j, std::move(times[j]), clip);
     return clip;
@@ -231,20 +262,37 @@ class ClipReader {
     return false;
   }
 
-  // Every key of the node and of the nodes above it, and between.
-  std::vector<float> sampleTimes(Index node) const {
+  // The node and those above it, from the top down.
+  std::vector<Index> chainOf(Index node) const {
+    std::vector<Index> chain;
+    for (std::optional<Index> n = node; n; n = graph_.parent[*n]) chain.push_back(*n);
+    std::reverse(chain.begin(), chain.end());
+    return chain;
+  }
+
+  // Every key of these nodes, and between.
+  std::vector<float> sampleTimes(const std::vector<Index>& chain) {
     std::vector<float> times;
-    for (std::optional<Index> n = node; n; n = graph_.parent[*n]) {
-      if (const auto known = nodes_.find(*n); known != nodes_.end()) known->second.addTimes(times);
+    for (const Index n : chain) {
+      if (const auto known = nodes_.find(n); known != nodes_.end()) known->second.addTimes(times);
     }
+    countTransforms(times.size());  // sorting keys takes time, too
     addTimesBetween(times);
     return times;
   }
 
   // The node's movement in the world.
   NodeTracks sampled(Index node, std::vector<float> times) {
-    std::vector<Index> chain;
-    for (std::optional<Index> n = node; n; n = graph_.parent[*n]) chain.push_back(*n);
+    struct Link {
+      const NodeTracks* tracks = nullptr;  // null: it stands still
+      Transform stands;
+    };
+    const std::vector<Index> chain = chainOf(node);
+    std::vector<Link> links(chain.size());
+    for (std::size_t i = 0; i < chain.size(); ++i) {
+      const auto known = nodes_.find(chain[i]);
+      if (known != nodes_.end()) links[i] = {&known->second, decompose(graph_.local[chain[i]])};
+    }
     warnings_.add("moving-parents",
                   "root joints have nodes above them that move or are stretched: sampled 60 times a second",
                   skeleton_.skeleton.joints[0].name);
@@ -254,10 +302,9 @@ class ClipReader {
     result.scale.emplace();
     for (const float time : times) {
       Affine world = Affine::Identity();
-      for (auto n = chain.rbegin(); n != chain.rend(); ++n) {
-        const auto known = nodes_.find(*n);
-        world = world * (known == nodes_.end() ? graph_.local[*n]
-                                               : known->second.at(time, decompose(graph_.local[*n])).toAffine());
+      for (std::size_t i = 0; i < chain.size(); ++i) {
+        const Link& link = links[i];
+        world = world * (link.tracks ? link.tracks->at(time, link.stands).toAffine() : graph_.local[chain[i]]);
       }
       const Transform local = decompose(world);
       Eigen::Quaternionf rotation(local.rotation.cast<float>());
@@ -280,14 +327,23 @@ class ClipReader {
     sortUnique(times);
   }
 
-  // Of all clips: a few kilobytes of nodes and keys must not ask for gigabytes.
-  void countSamples(std::size_t added) {
-    constexpr std::size_t kMostSamples = 8'000'000;
+  // Of all clips: a few kilobytes of nodes and keys must not ask for gigabytes, nor for minutes.
+  void countSamples(std::size_t added, std::size_t nodes) {
+    constexpr std::size_t kMostSamples = 2'000'000;
     samples_ += added;
-    if (samples_ > kMostSamples) {
-      throw Error(ErrorCode::kLimit, "has clips too long for all that hangs on nodes that they move", {},
-                  "shorten them, or let their nodes stand still");
-    }
+    if (samples_ > kMostSamples) failTooLong();
+    countTransforms(added * nodes);
+  }
+
+  void countTransforms(std::size_t added) {
+    constexpr std::size_t kMostTransforms = std::size_t{1} << 26;
+    transforms_ += added;
+    if (transforms_ > kMostTransforms) failTooLong();
+  }
+
+  [[noreturn]] void failTooLong() const {
+    throw Error(ErrorCode::kLimit, "is too long, with those before it, for all that hangs on nodes that they move",
+                animationPlace(asset_.document, number_), "shorten them, or let their nodes stand still");
   }
 
   // A part that no channel moves stays where the node has it, which may be off the rest pose.
@@ -312,8 +368,10 @@ class ClipReader {
   SceneGraph graph_;
   Pose nodePose_;
   Box box_;
-  std::map<Index, NodeTracks> nodes_;  // of the animation being read
+  Index number_ = 0;                   // of the animation being read
+  std::map<Index, NodeTracks> nodes_;  // of that
   std::size_t samples_ = 0;            // of all that were read
+  std::size_t transforms_ = 0;         // of nodes, for these samples
 };
 
 // Accessors that share a buffer view, which is made when all are there.
@@ -554,10 +612,11 @@ std::vector<Clip> readClips(const Asset& asset, const AssetSkeleton& skeleton, W
 
 std::vector<Clip> readClips(const Asset& asset, const AssetSkeleton& skeleton, std::span<const Index> animations,
                             Warnings& warnings) {
+  checkSharing(asset, animations);
   ClipReader reader(asset, skeleton, warnings);
   std::vector<Clip> clips;
   for (const Index animation : animations) {
-    clips.push_back(reader.read(asset.document.animations[animation]));
+    clips.push_back(reader.read(animation));
     checkClip(clips.back(), skeleton.skeleton);
   }
   return clips;

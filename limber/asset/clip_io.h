@@ -18,7 +18,12 @@ namespace limber {
 // second between (warning "moving-parents"). Keys that are not finite or not later than the one before, and rotations
 // of length 0, are left out (warning "invalid-keys"). Morph weights and movement of other nodes are not part of a clip.
 // Where a node's scale mirrors, tracks have rotations and scales as decompose() finds them, which the rest pose has,
-// too. Throws Error kLimit where joints below moving nodes would have more than 8 million samples together.
+// too.
+//
+// Throws Error kLimit, which names the animation, where joints below moving nodes would have more than 2 million
+// samples together or these take more than 2^26 transforms of the nodes above; and, before anything is read, where
+// channels that share keys would have more than 4 million numbers and more than 16 times what the document's buffers
+// hold.
 std::vector<Clip> readClips(const Asset& asset, const AssetSkeleton& skeleton, Warnings& warnings);
 
 // The same of the animations with these numbers alone, in their order.

@@ -372,6 +372,49 @@ TEST(ClipIo, LeavesInvalidKeysOut) {
   EXPECT_EQ(warnings.items()[0].count, 4u);
 }
 
+void expectLimitIn(const Asset& asset, const std::string& place) {
+  Warnings warnings;
+  try {
+    readClips(asset, readSkeleton(asset), warnings);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::kLimit);
+    EXPECT_THAT(error.what(), ::testing::HasSubstr(place));
+  }
+}
+
+TEST(ClipIo, LongChainsAboveARootAreRefusedBeforeTheyAreSampled) {
+  testing::GltfBuilder model = testing::everythingModel();
+  const Index times = model.accessor<float>({0, 600}, 5126, "SCALAR", 2);  // 36 000 samples
+  const Index places = model.accessor<float>({0, 1, 0, 3, 1, 0}, 5126, "VEC3", 2);
+  Index top = 0;
+  for (int i = 0; i < 2000; ++i) top = model.push("nodes", {{"children", {top}}});
+  model.json["scenes"][0]["nodes"] = {top, 2};
+  Json& animation = model.json["animations"][0];
+  animation["samplers"].push_back({{"input", times}, {"output", places}});
+  animation["channels"].push_back({{"sampler", 1}, {"target", {{"node", top}, {"path", "translation"}}}});
+  expectLimitIn(readAsset(model.glb(), "chain.glb"), "animation 'turn'");
+}
+
+TEST(ClipIo, KeysThatTooManyChannelsShareAreRefusedBeforeTheyAreRead) {
+  testing::GltfBuilder model = testing::everythingModel();
+  std::vector<float> times, turns;
+  for (int k = 0; k < 1000; ++k) {
+    times.push_back(static_cast<float>(k));
+    turns.insert(turns.end(), {0, 0, 0, 1});
+  }
+  Json& animation = model.json["animations"][0];
+  animation["samplers"][0] = {{"input", model.accessor(times, 5126, "SCALAR", times.size())},
+                              {"output", model.accessor(turns, 5126, "VEC4", times.size())}};
+  Asset asset = readAsset(model.glb(), "shared.glb");
+  std::vector<gltf::Animation>& animations = asset.document.animations;
+  animations.resize(20, animations[0]);
+  Warnings warnings;
+  EXPECT_EQ(readClips(asset, readSkeleton(asset), warnings).size(), 20u);
+  animations.resize(850, animations[0]);
+  expectLimitIn(asset, "animation 'turn'");
+}
+
 TEST(ClipIo, RefusesWhatDoesNotFit) {
   Asset asset = motionAsset(randomMotion(1));
   AssetSkeleton skeleton = readSkeleton(asset);

@@ -16,7 +16,7 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kFreeMemory = std::size_t{32} << 20, kGrowth = 1024;
+constexpr std::size_t kFreeMemory = std::size_t{32} << 20, kGrowth = 64;
 
 struct Found {
   std::size_t views = 0, primitives = 0;

@@ -13,6 +13,7 @@
 #include <meshoptimizer.h>
 
 #include "limber/asset/accessor.h"
+#include "limber/asset/codecs_detail.h"
 #include "limber/asset/read.h"
 #include "limber/asset/testing/document_json.h"
 #include "limber/asset/testing/gltf_builder.h"
@@ -226,6 +227,17 @@ TEST(Meshopt, BrokenDataAreErrors) {
     file.addView(good, count, stride, mode, filter);
     EXPECT_EQ(codeOf(file), code) << count << " " << stride << " " << mode << " " << filter;
   }
+}
+
+TEST(DecodeBudget, GrowsWithTheFile) {
+  Asset asset;
+  asset.buffers.push_back({Bytes(1000), ""});
+  asset.buffers.push_back({Bytes(500), ""});
+  const std::size_t size = (std::size_t{32} << 20) + 64 * 1500;
+  DecodeBudget budget(asset);
+  EXPECT_EQ(budget.left(), size);
+  budget.take(size, "m");
+  EXPECT_THROW(budget.take(1, "m"), Error);
 }
 
 // A grid of points in a plane with weights on two joints, as Draco data and as a model that refers to them.

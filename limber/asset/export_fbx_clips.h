@@ -27,7 +27,7 @@ struct FbxMovable {
 };
 
 // Writes a stack for each of the clips, with curves at its own keys, and between where a straight line is not what the
-// clip says: closer than 0.05 degree for rotations, a ten-thousandth of what the curve spans for all others. Steps are
+// clip says: closer than 0.005 degree for rotations, a ten-thousandth of what the curve spans for all others. Steps are
 // flagged as such, and have a key a ten-thousandth of a second before the next for readers that do not look. Keys
 // before 0 are kept.
 std::vector<FbxStack> writeFbxClips(const Asset& asset, const std::vector<Index>& clips, const FbxMovable& movable,

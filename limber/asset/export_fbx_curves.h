@@ -15,7 +15,7 @@ struct FbxKeys {
   bool isStepped = false;  // values hold until the next key
 };
 
-inline constexpr double kFbxAngleTolerance = 0.05;  // degrees
+inline constexpr double kFbxAngleTolerance = 0.005;  // degrees
 inline constexpr double kFbxTolerance = 1e-4;       // of what a curve spans
 
 // The keys of a track, and between them, by halves down to a 256th, what is needed for a straight line to stay within

@@ -24,10 +24,10 @@ namespace {
 
 constexpr std::uint64_t kMaxVertices = kNoIndex - 1;
 // Vertices that instances may add to those that the file holds: a few kilobytes of nodes must not ask for gigabytes.
-constexpr std::uint64_t kMaxAddedVertices = 16'000'000;
+constexpr std::uint64_t kMaxAddedVertices = 4'000'000;
 
 // The same for instances, which cost memory even where their mesh has no vertices.
-constexpr std::uint64_t kMaxAddedInstances = 1'000'000;
+constexpr std::uint64_t kMaxAddedInstances = 262'144;
 
 // One showing of a mesh.
 struct MeshInstance {

@@ -32,8 +32,8 @@ struct Geometry {
 // A skinned node's vertices are placed by its skin's bind pose: the mesh's own space mapped so that the skin's joints
 // stand where their inverse bind matrices say. A mesh without a skin below a joint moves there with the joint.
 //
-// Throws Error kLimit above 2^32-2 vertices, where instances of one mesh multiply a small file to many millions of
-// vertices, or above a million instances more than the file has nodes; kBadData where a vertex is not finite or nothing
+// Throws Error kLimit above 2^32-2 vertices, where instances of one mesh add more than 4 million vertices to those of
+// the file, or above 262144 instances more than the file has nodes; kBadData where a vertex is not finite or nothing
 // has a triangle; where() begins with the asset's name. Cost: O(#S + #F).
 Geometry collectGeometry(const Asset& asset);
 

@@ -1,6 +1,8 @@
 #include "limber/asset/gltf_document.h"
 
 #include <algorithm>
+#include <filesystem>
+#include <map>
 #include <string>
 
 #include <fmt/format.h>
@@ -13,6 +15,7 @@
 #include "limber/asset/json_access.h"
 #include "limber/asset/json_text.h"
 #include "limber/asset/uri.h"
+#include "limber/core/printable.h"
 
 namespace limber {
 
@@ -27,26 +30,48 @@ bool isCompressionFallback(const gltf::Buffer& buffer, const std::string& place)
   return isFallback("EXT_meshopt_compression") || isFallback("KHR_meshopt_compression");
 }
 
-Bytes resolve(std::string_view uri, const std::string& place, const Resolver& resolver) {
-  std::optional<Bytes> bytes;
-  const std::string path = localPath(uri);
-  if (resolver) bytes = resolver(path);
-  if (!bytes) {
-    throw Error(ErrorCode::kFile, fmt::format("its file \"{}\" is not there", path), place,
-                "put it beside the model, or use a GLB");
+// The files beside the model. One that is named again is read again; hostile documents do so by the hundred.
+class FilesBeside {
+ public:
+  explicit FilesBeside(const Resolver& resolver) : resolver_(resolver) {}
+
+  Bytes read(std::string_view uri, const std::string& place) {
+    const std::string path = localPath(uri);
+    std::size_t& size = sizes_[std::filesystem::path(path).lexically_normal().generic_string()];
+    repeated_ += size;
+    if (repeated_ > kMaxRepeated) {
+      throw Error(ErrorCode::kLimit,
+                  fmt::format("its file \"{}\" was named before, and files named again come to more than {} MB",
+                              shortened(path), kMaxRepeated >> 20),
+                  place, "name each file once");
+    }
+    std::optional<Bytes> bytes;
+    if (resolver_) bytes = resolver_(path);
+    if (!bytes) {
+      throw Error(ErrorCode::kFile, fmt::format("its file \"{}\" is not there", shortened(path)), place,
+                  "put it beside the model, or use a GLB");
+    }
+    size = bytes->size();
+    return std::move(*bytes);
   }
-  return std::move(*bytes);
-}
+
+ private:
+  static constexpr std::size_t kMaxRepeated = std::size_t{64} << 20;
+
+  const Resolver& resolver_;
+  std::map<std::string, std::size_t> sizes_;  // of the files by path; 0 where there is none
+  std::size_t repeated_ = 0;                  // bytes
+};
 
 Asset::Buffer loadBuffer(const gltf::Buffer& buffer, const std::string& place, std::optional<ByteSpan> binary,
-                         const Resolver& resolver) {
+                         FilesBeside& files) {
   Asset::Buffer loaded;
   const std::size_t length = buffer.byteLength;
   if (isDataUri(buffer.uri)) {
     DataUri data = decodeDataUri(buffer.uri);
     loaded = {std::move(data.bytes), std::move(data.header)};
   } else if (!buffer.uri.empty()) {
-    loaded = {resolve(buffer.uri, place, resolver), buffer.uri};
+    loaded = {files.read(buffer.uri, place), buffer.uri};
   } else if (binary) {
     // The chunk is padded to four bytes; the buffer is not.
     loaded.bytes.assign(binary->begin(), binary->begin() + std::min(length, binary->size()));
@@ -59,7 +84,7 @@ Asset::Buffer loadBuffer(const gltf::Buffer& buffer, const std::string& place, s
   return loaded;
 }
 
-void loadBuffers(Asset& asset, std::optional<ByteSpan> binary, const Resolver& resolver) {
+void loadBuffers(Asset& asset, std::optional<ByteSpan> binary, FilesBeside& files) {
   for (std::size_t i = 0; i < asset.document.buffers.size(); ++i) {
     gltf::Buffer& buffer = asset.document.buffers[i];
     const std::string place = fmt::format("buffers[{}]", i);
@@ -69,7 +94,7 @@ void loadBuffers(Asset& asset, std::optional<ByteSpan> binary, const Resolver& r
     }
     try {
       // Only the first buffer may be the binary chunk.
-      asset.buffers.push_back(loadBuffer(buffer, place, i == 0 ? binary : std::nullopt, resolver));
+      asset.buffers.push_back(loadBuffer(buffer, place, i == 0 ? binary : std::nullopt, files));
     } catch (const Error& error) {
       throw error.where().empty() ? error.within(place) : error;
     }
@@ -85,22 +110,35 @@ void loadBuffers(Asset& asset, std::optional<ByteSpan> binary, const Resolver& r
 }
 
 // Images are the user's to miss: what cannot be found or trusted stays a reference.
-void loadImages(Asset& asset, const Resolver& resolver) {
+void loadImages(Asset& asset, FilesBeside& files) {
+  std::map<std::string, std::string> problems;  // of each URI that was met; empty where its file was read
   for (std::size_t i = 0; i < asset.document.images.size(); ++i) {
     const std::string& uri = asset.document.images[i].uri;
     if (uri.empty() || isDataUri(uri)) continue;
-    const bool known = std::any_of(asset.sideFiles.begin(), asset.sideFiles.end(),
-                                   [&](const Asset::SideFile& file) { return file.uri == uri; });
-    if (known) continue;
     const std::string place = fmt::format("images[{}]", i);
-    try {
-      Bytes bytes = resolve(uri, place, resolver);
-      if (imageFormat(bytes).mediaType.empty()) failAt(place, fmt::format("\"{}\" is not an image", uri));
-      asset.sideFiles.push_back({uri, std::move(bytes)});
-    } catch (const Error& error) {
-      asset.warnings.add("missing-images",
-                         "images could not be read; the references to them stay (" + error.message() + ")", place);
+    const auto [met, isNew] = problems.try_emplace(uri);
+    if (isNew) {
+      try {
+        Bytes bytes = files.read(uri, place);
+        if (imageFormat(bytes).mediaType.empty()) failAt(place, fmt::format("\"{}\" is not an image", shortened(uri)));
+        asset.sideFiles.push_back({uri, std::move(bytes)});
+      } catch (const Error& error) {
+        met->second = error.message();
+      }
     }
+    if (met->second.empty()) continue;
+    asset.warnings.add("missing-images", "images could not be read; the references to them stay (" + met->second + ")",
+                       place);
+  }
+}
+
+// parseJson; what its errors quote of the text is cut.
+Json parseDocument(std::string_view text, Warnings& warnings) {
+  constexpr std::size_t kMost = 200;
+  try {
+    return parseJson(text, warnings);
+  } catch (const Error& error) {
+    throw Error(error.code(), shortened(error.message(), kMost), error.where(), error.remedy());
   }
 }
 
@@ -109,9 +147,10 @@ void loadImages(Asset& asset, const Resolver& resolver) {
 Asset readGltfDocument(ByteSpan text, std::optional<ByteSpan> binary, const Resolver& resolver) {
   Asset asset;
   const std::string_view characters(reinterpret_cast<const char*>(text.data()), text.size());
-  asset.document = gltf::documentOf(parseJson(characters, asset.warnings));
-  loadBuffers(asset, binary, resolver);
-  loadImages(asset, resolver);
+  asset.document = gltf::documentOf(parseDocument(characters, asset.warnings), characters.size());
+  FilesBeside files(resolver);
+  loadBuffers(asset, binary, files);
+  loadImages(asset, files);
   return asset;
 }
 

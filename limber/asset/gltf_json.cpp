@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "limber/asset/json_access.h"
+#include "limber/core/printable.h"
 
 namespace limber::gltf {
 
@@ -172,6 +173,9 @@ bool same(const std::optional<Eigen::Matrix<double, rows, columns>>& a,
   return a.has_value() == b.has_value() && (!a || std::equal(a->data(), a->data() + a->size(), b->data()));
 }
 
+// Objects that the lists of a document may hold, all together: some for any file, and one for each so many bytes of it.
+constexpr std::size_t kObjectsOfAny = 65536, kBytesPerObject = 16;
+
 enum class Need {
   kRequired,   // missing or wrong: an error
   kOptional,   // missing: the default; wrong: an error
@@ -181,7 +185,11 @@ enum class Need {
 // Takes an object's members out of its JSON. Objects below it are moved out; what is left is kept.
 class Reader {
  public:
-  Reader(Json& json, const JsonView& view) : json_(json), view_(view) { view_.requireObject(); }
+  // objectsLeft  that lists may still hold
+  Reader(Json& json, const JsonView& view, std::size_t& objectsLeft)
+      : json_(json), view_(view), objectsLeft_(objectsLeft) {
+    view_.requireObject();
+  }
 
   template <typename T>
   void value(const char* key, T& member, const T& byDefault = T(), Need need = Need::kOptional) {
@@ -243,6 +251,7 @@ class Reader {
 
   Json& json_;
   JsonView view_;  // of json_
+  std::size_t& objectsLeft_;
 };
 
 // Brings an object's JSON to what its members are now.
@@ -565,8 +574,8 @@ void describe(Visit& visit, Document& document) {
 }
 
 template <typename T>
-void read(T& object, Json& json, const JsonView& view) {
-  Reader reader(json, view);
+void read(T& object, Json& json, const JsonView& view, std::size_t& objectsLeft) {
+  Reader reader(json, view, objectsLeft);
   describe(reader, object);
   reader.rest(object);
 }
@@ -575,7 +584,7 @@ template <typename T>
 void Reader::object(const char* key, T& member, Need need) {
   const JsonView found = view_.object(key);
   if (found.exists()) {
-    read(member, *find(key), found);
+    read(member, *find(key), found, objectsLeft_);
     *find(key) = nullptr;
   } else if (need == Need::kRequired) {
     found.fail("is missing");
@@ -590,8 +599,15 @@ void Reader::list(const char* key, std::vector<T>& members, Need need) {
     return;
   }
   Json& elements = *find(key);
+  if (elements.size() > objectsLeft_) {
+    throw Error(
+        ErrorCode::kLimit,
+        fmt::format("has {} elements, with those before more than the length of the JSON explains", elements.size()),
+        found.path(), "export the model without empty elements");
+  }
+  objectsLeft_ -= elements.size();
   members.resize(elements.size());
-  for (std::size_t i = 0; i < members.size(); ++i) read(members[i], elements[i], found[i]);
+  for (std::size_t i = 0; i < members.size(); ++i) read(members[i], elements[i], found[i], objectsLeft_);
   if (!members.empty()) elements = nullptr;
 }
 
@@ -638,18 +654,19 @@ void checkVersion(const JsonView& root) {
   if (!major) asset.member("version").fail("is missing or no version");
   if (*major == 2 && minimum == "2.0") return;
   throw Error(ErrorCode::kUnsupported,
-              fmt::format("is glTF {}, limber reads glTF 2.0", *major == 2 ? minimum : version), {},
+              fmt::format("is glTF {}, limber reads glTF 2.0", shortened(*major == 2 ? minimum : version)), {},
               "export the model as glTF 2.0");
 }
 
 }  // namespace
 
-Document documentOf(Json json) {
+Document documentOf(Json json, std::size_t textSize) {
   const JsonView root(json);
   root.requireObject();
   checkVersion(root);
   Document document;
-  read(document, json, root);
+  std::size_t objectsLeft = kObjectsOfAny + textSize / kBytesPerObject;
+  read(document, json, root, objectsLeft);
   return document;
 }
 

@@ -534,6 +534,25 @@ TEST(GltfJson, ErrorsSayWhere) {
   }
 }
 
+TEST(GltfJson, ObjectsAreBoundedByTheLengthOfTheText) {
+  const auto codeOf = [](std::size_t materials, std::size_t scenes, std::size_t textSize) {
+    Json json = parsed(R"({"asset": {"version": "2.0"}})");
+    json["materials"] = std::vector<Json>(materials, Json::object());
+    json["scenes"] = std::vector<Json>(scenes, Json::object());
+    try {
+      documentOf(std::move(json), textSize);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.where(), materials > 0 ? "materials" : "scenes");  // which is read first
+      return error.code();
+    }
+    return ErrorCode::kCancelled;
+  };
+  EXPECT_EQ(codeOf(0, 65536, 0), ErrorCode::kCancelled);
+  EXPECT_EQ(codeOf(0, 65537, 0), ErrorCode::kLimit);
+  EXPECT_EQ(codeOf(0, 65537, 16), ErrorCode::kCancelled);
+  EXPECT_EQ(codeOf(2, 65537, 16), ErrorCode::kLimit);
+}
+
 TEST(GltfJson, OtherVersionsAreRefused) {
   for (const char* text : {R"({"asset":{"version":"1.0"}})", R"({"asset":{"version":"2.1","minVersion":"2.1"}})"}) {
     EXPECT_EQ(errorOf(parsed(text)).code(), ErrorCode::kUnsupported) << text;

@@ -1,5 +1,7 @@
 #include "limber/asset/grid_step.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <random>
@@ -42,6 +44,34 @@ TEST(GridStep, AGridThatIsCoarserThanTheIntegersShowsInThem) {
     return std::copysign(((level << 2) | (level >> 11)) / 32767.0, value);
   };
   EXPECT_NEAR(gridStep(mapped(organic(3000), grid), {3000, 3, ComponentType::kI16, true}), 4.0 / 32767, 0.1 / 32767);
+}
+
+// As encoders write a small mesh: its box has all levels.
+TEST(GridStep, AGridOverTheirOwnBoxShowsInFewValues) {
+  for (const std::size_t count : {20u, 300u}) {
+    const std::vector<double> values = organic(count);
+    std::array<double, 3> low, high;
+    low.fill(1e9);
+    high.fill(-1e9);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      low[i % 3] = std::min(low[i % 3], values[i]);
+      high[i % 3] = std::max(high[i % 3], values[i]);
+    }
+    const double side = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
+    for (int bits = 8; bits <= 14; ++bits) {
+      std::vector<float> decoded, integers;
+      const double levels = std::ldexp(1.0, bits) - 1, half = std::ldexp(1.0, bits - 1) - 1;
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        const double level = std::round((values[i] - low[i % 3]) / side * levels);
+        decoded.push_back(static_cast<float>(low[i % 3] + level * side / levels));
+        const double middle = (values[i] - 0.5 * (low[i % 3] + high[i % 3])) / (0.5 * side);
+        integers.push_back(static_cast<float>(std::round(std::round(middle * half) / half * 32767) / 32767));
+      }
+      EXPECT_NEAR(gridStep(decoded, {}), side / levels, 1e-3 * side / levels) << count << ", " << bits;
+      const AccessorInfo normalised{static_cast<Index>(count), 3, ComponentType::kI16, true};
+      EXPECT_NEAR(gridStep(integers, normalised), 1 / half, 1e-3 / half) << count << ", " << bits;
+    }
+  }
 }
 
 TEST(GridStep, IntegersAreAGridHoweverFewThereAre) {

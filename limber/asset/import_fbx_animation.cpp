@@ -5,7 +5,10 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <set>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include "limber/asset/accessor.h"
 
@@ -18,14 +21,29 @@ constexpr std::array<std::string_view, 3> kAxes = {"d|X", "d|Y", "d|Z"};
 constexpr std::string_view kPercent = "d|DeformPercent";
 
 constexpr double kTolerance = 1e-4;  // radians, or of what a track moves through
-// Spans as short as a picture of a film takes are divided for a larger error only, so that curves which were baked keep
-// their number of keys.
+// Keys of the file that are no farther apart than a picture of a film takes were baked: nothing comes between them.
+// Parts as short of longer spans are divided for a larger error only.
 constexpr std::int64_t kShortSpan = kFbxTicksPerSecond / 24;
 constexpr double kShortSpanTolerance = 5;                          // times as large
 constexpr std::int64_t kShortestSplit = kFbxTicksPerSecond / 480;  // spans up to here are not divided
 constexpr int kMostHalvings = 10;
 // Together all clips of a document may have so many keys more than their curves, for each of these and in any case.
 constexpr std::size_t kMorePerKey = 16, kMoreKeys = std::size_t{1} << 20;
+// And so many numbers at the keys of their curves, which tracks may share: those beyond are refused.
+constexpr std::size_t kNumbersPerKey = 16, kFreeNumbers = std::size_t{4} << 20;
+constexpr std::size_t kNumbersOfAKey = 4;  // of a rotation; longer rows count as several keys
+// Clips may share the nodes of curves: what they move may be so many times the objects of the file, and so much more.
+constexpr std::size_t kMovedPerObject = 4, kFreeMoved = std::size_t{1} << 16;
+
+[[noreturn]] void failShared(const std::string& clip) {
+  throw Error(ErrorCode::kLimit, "shares its curves among so much that its keys take too much memory",
+              fmt::format("clip '{}'", clip), "export it with fewer clips, models or blend shapes");
+}
+
+// What the clips of a document may still take.
+struct ClipBudget {
+  std::size_t moreKeys = kMoreKeys, numbers = kFreeNumbers;
+};
 
 // In what glTF can say of it: files have the same number in several precisions.
 bool differs(double a, double b) {
@@ -60,34 +78,40 @@ double distanceOf(const Row& a, const Row& b, bool isRotation) {
 
 class TrackSampler {
  public:
-  TrackSampler(const RowAt& at, bool isRotation, std::size_t& budget)
-      : at_(at), isRotation_(isRotation), budget_(budget) {}
+  TrackSampler(const RowAt& at, Eigen::Index components, bool isRotation, ClipBudget& budget)
+      : at_(at), components_(components), isRotation_(isRotation), budget_(budget) {}
 
   // `keys` ascending, at least one.
   FbxTrack sample(const std::vector<std::int64_t>& keys) {
-    std::vector<Row> here, left;  // at each key, and its limit from the left
-    for (const std::int64_t key : keys) {
-      here.push_back(at_(key, false));
-      left.push_back(at_(key, true));
+    const auto count = static_cast<Eigen::Index>(keys.size());
+    Eigen::MatrixXd here(components_, count), left(components_, count);  // at each key, and its limit from the left
+    for (Eigen::Index k = 0; k < count; ++k) {
+      here.col(k) = at_(keys[static_cast<std::size_t>(k)], false);
+      left.col(k) = at_(keys[static_cast<std::size_t>(k)], true);
     }
     double reach = 0;
-    for (const Row& row : here) reach = std::max(reach, (row - here[0]).norm());
+    for (Eigen::Index k = 0; k < count; ++k) reach = std::max(reach, (here.col(k) - here.col(0)).norm());
     tolerance_ = isRotation_ ? kTolerance : kTolerance * reach;
     // Whether it stands still between all keys and jumps at some.
     bool steps = false, stands = true;
     for (std::size_t k = 0; k + 1 < keys.size(); ++k) {
-      steps = steps || here[k + 1] != left[k + 1];
-      stands = stands && here[k] == left[k + 1] && at_(keys[k] + (keys[k + 1] - keys[k]) / 2, false) == here[k];
+      const auto from = static_cast<Eigen::Index>(k), to = from + 1;
+      steps = steps || here.col(to) != left.col(to);
+      stands = stands && here.col(from) == left.col(to) &&
+               at_(keys[k] + (keys[k + 1] - keys[k]) / 2, false) == here.col(from);
     }
     FbxTrack track;
     if (steps && stands) track.interpolation = Interpolation::kStep;
     for (std::size_t k = 0; k < keys.size(); ++k) {
+      const auto column = static_cast<Eigen::Index>(k);
+      const Row row = here.col(column), before = left.col(column);
       if (k > 0 && track.interpolation == Interpolation::kLinear) {
-        addBetween(track, {keys[k - 1], keys[k]}, here[k - 1], left[k], kMostHalvings);
+        const bool isBaked = keys[k] - keys[k - 1] <= kShortSpan;
+        addBetween(track, {keys[k - 1], keys[k]}, here.col(column - 1), before, isBaked ? 0 : kMostHalvings);
         // One tick before: as times in float this may be the same moment, which the next float down then stands for.
-        if (left[k] != here[k] && keys[k] - 1 > keys[k - 1]) add(track, keys[k] - 1, left[k]);
+        if (before != row && keys[k] - 1 > keys[k - 1]) add(track, keys[k] - 1, before);
       }
-      add(track, keys[k], here[k]);
+      add(track, keys[k], row);
     }
     return track;
   }
@@ -104,13 +128,14 @@ class TrackSampler {
 
   void addBetween(FbxTrack& track, const Span& span, const Row& from, const Row& to, int halvings) {
     const std::int64_t length = span.to - span.from, middle = span.from + length / 2;
-    if (length <= kShortestSplit || halvings == 0 || budget_ == 0) return;
+    if (length <= kShortestSplit || halvings == 0 || budget_.moreKeys == 0) return;
     const Row half = at_(middle, false);
     const double tolerance = length > kShortSpan ? tolerance_ : kShortSpanTolerance * tolerance_;
     const bool fits = distanceOf(between(from, to, 0.5, isRotation_), half, isRotation_) <= tolerance &&
                       fitsAt(span, from, to, 0.25, tolerance) && fitsAt(span, from, to, 0.75, tolerance);
     if (fits) return;
-    --budget_;
+    const std::size_t cost = std::max<std::size_t>(1, static_cast<std::size_t>(components_) / kNumbersOfAKey);
+    budget_.moreKeys -= std::min(budget_.moreKeys, cost);
     addBetween(track, {span.from, middle}, from, half, halvings - 1);
     add(track, middle, half);
     addBetween(track, {middle, span.to}, half, to, halvings - 1);
@@ -122,8 +147,9 @@ class TrackSampler {
   }
 
   const RowAt& at_;
+  Eigen::Index components_;
   bool isRotation_;
-  std::size_t& budget_;
+  ClipBudget& budget_;
   double tolerance_ = 0;
 };
 
@@ -157,10 +183,31 @@ void setTimes(FbxTrack& track, std::int64_t start) {
   }
 }
 
-void addKeyTicks(const FbxCurve* curve, std::vector<std::int64_t>& ticks) {
-  if (!curve) return;
-  for (const FbxKey& key : curve->keys()) ticks.push_back(key.ticks);
-}
+// When curves have keys: many models may share a curve, whose keys count once.
+class KeyTicks {
+ public:
+  void add(const FbxCurve* curve) {
+    if (curve) curves_.insert(curve);
+  }
+  void add(std::int64_t tick) { others_.insert(tick); }
+  void add(const KeyTicks& other) {
+    curves_.insert(other.curves_.begin(), other.curves_.end());
+    others_.insert(other.others_.begin(), other.others_.end());
+  }
+
+  // In no order.
+  std::vector<std::int64_t> all() const {
+    std::vector<std::int64_t> ticks(others_.begin(), others_.end());
+    for (const FbxCurve* curve : curves_) {
+      for (const FbxKey& key : curve->keys()) ticks.push_back(key.ticks);
+    }
+    return ticks;
+  }
+
+ private:
+  std::set<const FbxCurve*> curves_;
+  std::set<std::int64_t> others_;
+};
 
 // The keys within a clip, and its ends where it cuts a curve; of one that stands still its ends in any case.
 struct ClipRange {
@@ -184,13 +231,20 @@ struct ClipRange {
 // Writes the tracks of one clip into the document.
 class ClipWriter {
  public:
-  ClipWriter(Asset& asset, ClipRange range, std::size_t& budget) : asset_(asset), range_(range), budget_(budget) {}
+  ClipWriter(Asset& asset, const std::string& name, ClipRange range, ClipBudget& budget)
+      : asset_(asset), range_(range), budget_(budget) {
+    animation_.name = name;
+  }
 
-  void addTrack(Index node, TrackPath path, std::vector<std::int64_t> ticks, const RowAt& at) {
-    const std::vector<std::int64_t> keys = range_.keysOf(std::move(ticks));
+  // `width`: how many numbers `at` gives.
+  void addTrack(Index node, TrackPath path, std::size_t width, const KeyTicks& ticks, const RowAt& at) {
+    const std::vector<std::int64_t> keys = range_.keysOf(ticks.all());
     if (keys.empty()) return;
+    const std::size_t numbers = keys.size() * width;
+    if (numbers > budget_.numbers) failShared(animation_.name);
+    budget_.numbers -= numbers;
     const bool isRotation = path == TrackPath::kRotation;
-    FbxTrack track = TrackSampler(at, isRotation, budget_).sample(keys);
+    FbxTrack track = TrackSampler(at, static_cast<Eigen::Index>(width), isRotation, budget_).sample(keys);
     if (isRotation) keepNearSide(track);
     dropRepeated(track);
     setTimes(track, range_.start);
@@ -207,7 +261,7 @@ class ClipWriter {
       asset_.warnings.add("invalid-keys", "animation keys that are not finite or not in order are left out");
       return;
     }
-    const auto components = path == TrackPath::kWeights ? 1 : static_cast<Index>(track.rows[0].size());
+    const auto components = path == TrackPath::kWeights ? 1 : static_cast<Index>(width);
     gltf::AnimationSampler sampler;
     sampler.output = addFloatAccessor(asset_, values, components);
     sampler.input = inputOf(track.times);
@@ -220,9 +274,8 @@ class ClipWriter {
     animation_.channels.push_back(std::move(channel));
   }
 
-  void finish(std::string name) {
+  void finish() {
     if (animation_.channels.empty()) return;
-    animation_.name = std::move(name);
     asset_.document.animations.push_back(std::move(animation_));
   }
 
@@ -236,28 +289,28 @@ class ClipWriter {
 
   Asset& asset_;
   ClipRange range_;
-  std::size_t& budget_;
+  ClipBudget& budget_;
   gltf::Animation animation_;
   std::map<std::vector<float>, Index> inputs_;
 };
 
 // A clip of numbers that stand still is a moment; one of curves that do lasts as long as its stack says.
 ClipRange rangeOf(const FbxClipCurves& clip, Warnings& warnings) {
-  std::vector<std::int64_t> ticks;
-  bool isStill = true;
-  const auto add = [&](const FbxCurve* curve) {
-    addKeyTicks(curve, ticks);
-    isStill = isStill && (!curve || curve->isStill());
-  };
-  for (const std::optional<FbxMotion>& motion : clip.motions) {
-    for (std::size_t kind = 0; motion && kind < 3; ++kind) {
-      for (const FbxCurve* curve : motion->curves[kind]) add(curve);
-    }
+  std::set<const FbxCurve*> curves;
+  for (const auto& [model, motion] : clip.motions) {
+    for (const auto& ofKind : motion.curves) curves.insert(ofKind.begin(), ofKind.end());
   }
-  for (const auto& [object, percent] : clip.percents) add(percent.curve);
-  if (ticks.empty()) return {clip.start.value_or(0), clip.start.value_or(0)};
+  for (const auto& [object, percent] : clip.percents) curves.insert(percent.curve);
+  curves.erase(nullptr);
+  std::vector<std::int64_t> ends;
+  bool isStill = true;
+  for (const FbxCurve* curve : curves) {
+    ends.insert(ends.end(), {curve->keys().front().ticks, curve->keys().back().ticks});
+    isStill = isStill && curve->isStill();
+  }
+  if (ends.empty()) return {clip.start.value_or(0), clip.start.value_or(0)};
   if (isStill && clip.start) return {*clip.start, *clip.stop, true};
-  const auto [first, last] = std::minmax_element(ticks.begin(), ticks.end());
+  const auto [first, last] = std::minmax_element(ends.begin(), ends.end());
   if (!clip.start || *clip.start > *last || *clip.stop < *first) return {*first, *last};
   if (*first < *clip.start || *last > *clip.stop) {
     warnings.add("trimmed-clips", "keys outside of their clip's time are cut off", clip.name);
@@ -272,12 +325,12 @@ class ClipSampler {
       : models_(models), clip_(clip), start_(start), scale_(scale) {}
 
   void addModel(Index m, Index node, ClipWriter& writer) const {
-    std::array<std::vector<std::int64_t>, 3> ticks = ticksOf(m);
-    writer.addTrack(node, TrackPath::kTranslation, std::move(ticks[0]),
+    const std::array<KeyTicks, 3> ticks = ticksOf(m);
+    writer.addTrack(node, TrackPath::kTranslation, 3, ticks[0],
                     [&](std::int64_t at, bool fromLeft) { return Row(scale_ * localAt(m, at, fromLeft).translation); });
-    writer.addTrack(node, TrackPath::kRotation, std::move(ticks[1]),
+    writer.addTrack(node, TrackPath::kRotation, 4, ticks[1],
                     [&](std::int64_t at, bool fromLeft) { return Row(localAt(m, at, fromLeft).rotation.coeffs()); });
-    writer.addTrack(node, TrackPath::kScale, std::move(ticks[2]),
+    writer.addTrack(node, TrackPath::kScale, 3, ticks[2],
                     [&](std::int64_t at, bool fromLeft) { return Row(localAt(m, at, fromLeft).scale); });
   }
 
@@ -286,14 +339,15 @@ class ClipSampler {
       const auto found = clip_.percents.find(channel.object);
       return found == clip_.percents.end() ? FbxPercent{nullptr, channel.percent} : found->second;
     };
-    std::vector<std::int64_t> ticks;
+    KeyTicks ticks;
     for (const FbxShapeChannel& channel : use.shapes->channels) {
       const FbxPercent percent = percentOf(channel);
-      addKeyTicks(percent.curve, ticks);
-      if (!percent.curve && differs(percent.still, channel.percent)) ticks.push_back(start_);
+      ticks.add(percent.curve);
+      if (!percent.curve && differs(percent.still, channel.percent)) ticks.add(start_);
     }
-    writer.addTrack(use.node, TrackPath::kWeights, std::move(ticks), [&](std::int64_t at, bool fromLeft) {
-      std::vector<double> weights(use.shapes->targets.size(), 0);
+    const std::size_t targets = use.shapes->targets.size();
+    writer.addTrack(use.node, TrackPath::kWeights, targets, ticks, [&](std::int64_t at, bool fromLeft) {
+      std::vector<double> weights(targets, 0);
       for (const FbxShapeChannel& channel : use.shapes->channels) {
         const FbxPercent percent = percentOf(channel);
         channel.addWeights(percent.curve ? percent.curve->at(at, fromLeft) : percent.still, weights);
@@ -304,8 +358,8 @@ class ClipSampler {
 
  private:
   FbxPose poseAt(Index m, std::int64_t ticks, bool fromLeft) const {
-    const std::optional<FbxMotion>& motion = clip_.motions[m];
-    return motion ? motion->at(ticks, fromLeft) : models_[m].transform.rest;
+    const auto motion = clip_.motions.find(m);
+    return motion == clip_.motions.end() ? models_[m].transform.rest : motion->second.at(ticks, fromLeft);
   }
 
   Transform localAt(Index m, std::int64_t ticks, bool fromLeft) const {
@@ -313,17 +367,18 @@ class ClipSampler {
     return decompose(models_.localOf(m, [&](Index of) { return poseAt(of, ticks, fromLeft); }));
   }
 
-  void addKeys(Index m, std::size_t kind, std::vector<std::int64_t>& ticks) const {
-    if (!clip_.motions[m] || !clip_.motions[m]->moves[kind]) return;
-    const std::array<const FbxCurve*, 3>& curves = clip_.motions[m]->curves[kind];
-    for (const FbxCurve* curve : curves) addKeyTicks(curve, ticks);
+  void addKeys(Index m, std::size_t kind, KeyTicks& ticks) const {
+    const auto motion = clip_.motions.find(m);
+    if (motion == clip_.motions.end() || !motion->second.moves[kind]) return;
+    const std::array<const FbxCurve*, 3>& curves = motion->second.curves[kind];
+    for (const FbxCurve* curve : curves) ticks.add(curve);
     const bool isStill = std::none_of(curves.begin(), curves.end(), [](const FbxCurve* curve) { return curve; });
-    if (isStill) ticks.push_back(start_);
+    if (isStill) ticks.add(start_);
   }
 
   // The keys that count for translation, rotation and scale: those of its own curves, and of what else they depend on.
-  std::array<std::vector<std::int64_t>, 3> ticksOf(Index m) const {
-    std::array<std::vector<std::int64_t>, 3> ticks;
+  std::array<KeyTicks, 3> ticksOf(Index m) const {
+    std::array<KeyTicks, 3> ticks;
     if (models_[m].isCompensated) {
       for (const Index of : models_.chainOf(m)) {
         for (std::size_t kind = 0; kind < 3; ++kind) addKeys(of, kind, ticks[0]);
@@ -333,8 +388,8 @@ class ClipSampler {
     }
     for (std::size_t kind = 0; kind < 3; ++kind) addKeys(m, kind, ticks[kind]);
     if (models_[m].transform.turnsAboutPivot()) {
-      ticks[0].insert(ticks[0].end(), ticks[1].begin(), ticks[1].end());
-      ticks[0].insert(ticks[0].end(), ticks[2].begin(), ticks[2].end());
+      ticks[0].add(ticks[1]);
+      ticks[0].add(ticks[2]);
     }
     return ticks;
   }
@@ -363,7 +418,6 @@ void FbxAnimations::readStack(Index stack) {
   if (layers.empty()) return;
   FbxClipCurves clip;
   clip.name = objects_[stack].name;
-  clip.motions.resize(models_.count());
   const FbxProperties properties = objects_.properties(stack);
   constexpr std::int64_t kNone = std::numeric_limits<std::int64_t>::min();
   const std::int64_t start = properties.integer("LocalStart", kNone), stop = properties.integer("LocalStop", kNone);
@@ -389,12 +443,17 @@ const FbxCurve* FbxAnimations::curveOf(Index node, std::string_view component) {
   return nullptr;
 }
 
+void FbxAnimations::countMoved(const FbxClipCurves& clip) {
+  if (++moved_ > kFreeMoved + kMovedPerObject * objects_.count()) failShared(clip.name);
+}
+
 void FbxAnimations::readCurveNode(Index node, FbxClipCurves& clip) {
   for (const FbxObjects::Link& link : objects_.destinations(node)) {
     if (objects_.is(link.object, "Deformer", "BlendShapeChannel") && link.property == "DeformPercent") {
       const FbxCurve* curve = curveOf(node, kPercent);
       const std::optional<double> still = objects_.properties(node).number(kPercent);
-      if (curve || still) clip.percents.emplace(link.object, FbxPercent{curve, still.value_or(0)});
+      if (!curve && !still) continue;
+      if (clip.percents.emplace(link.object, FbxPercent{curve, still.value_or(0)}).second) countMoved(clip);
       continue;
     }
     if (link.property.empty()) continue;  // the layer
@@ -408,23 +467,24 @@ void FbxAnimations::readCurveNode(Index node, FbxClipCurves& clip) {
       continue;
     }
     const FbxTransform& transform = models_[*model].transform;
-    std::optional<FbxMotion>& motion = clip.motions[*model];
-    if (!motion) motion.emplace(transform.rest);
+    const auto [found, isNew] = clip.motions.try_emplace(*model, transform.rest);
+    if (isNew) countMoved(clip);
+    FbxMotion& motion = found->second;
     const Vec3 rest = FbxMotion(transform.rest).still[kind];
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const FbxCurve* curve = curveOf(node, kAxes[axis]);
-      motion->curves[kind][axis] = curve;
-      double& still = motion->still[kind][static_cast<int>(axis)];
+      motion.curves[kind][axis] = curve;
+      double& still = motion.still[kind][static_cast<int>(axis)];
       if (!curve) still = objects_.properties(node).number(kAxes[axis], still);
-      motion->moves[kind] = motion->moves[kind] || curve || differs(still, rest[static_cast<int>(axis)]);
+      motion.moves[kind] = motion.moves[kind] || curve || differs(still, rest[static_cast<int>(axis)]);
     }
-    moves_[*model] = moves_[*model] || motion->moves[kind];
+    moves_[*model] = moves_[*model] || motion.moves[kind];
     for (std::size_t axis = 0; kind == 2 && axis < 3; ++axis) {
-      const FbxCurve* curve = motion->curves[kind][axis];
+      const FbxCurve* curve = motion.curves[kind][axis];
       const double own = rest[static_cast<int>(axis)];
       const bool scales = curve ? std::any_of(curve->keys().begin(), curve->keys().end(),
                                               [&](const FbxKey& key) { return key.value != own; })
-                                : differs(motion->still[kind][static_cast<int>(axis)], own);
+                                : differs(motion.still[kind][static_cast<int>(axis)], own);
       if (scales) scales_[*model] = true;
     }
   }
@@ -432,19 +492,23 @@ void FbxAnimations::readCurveNode(Index node, FbxClipCurves& clip) {
 
 void FbxAnimations::addClips(Asset& asset, const std::vector<std::optional<Index>>& nodeOf,
                              const std::vector<FbxShapesInUse>& shapes, double scale) const {
-  std::size_t budget = kMoreKeys;
-  for (const auto& [object, curve] : curves_) budget += curve ? kMorePerKey * curve->keys().size() : 0;
+  ClipBudget budget;
+  for (const auto& [object, curve] : curves_) {
+    if (!curve) continue;
+    budget.moreKeys += kMorePerKey * curve->keys().size();
+    budget.numbers += kNumbersPerKey * curve->keys().size();
+  }
   for (const FbxClipCurves& clip : clips_) {
     const ClipRange range = rangeOf(clip, asset.warnings);
-    ClipWriter writer(asset, range, budget);
+    ClipWriter writer(asset, clip.name, range, budget);
     const ClipSampler sampler(models_, clip, range.start, scale);
     for (Index m = 0; m < models_.count(); ++m) {
       if (nodeOf[m]) sampler.addModel(m, *nodeOf[m], writer);
     }
     for (const FbxShapesInUse& use : shapes) sampler.addShapes(use, writer);
-    writer.finish(clip.name);
+    writer.finish();
   }
-  if (budget == 0) {
+  if (budget.moreKeys == 0) {
     asset.warnings.add("coarse-clips", "clips that would take too many keys are coarser than their curves");
   }
 }

@@ -27,14 +27,15 @@ struct FbxPercent {
 // What one stack moves.
 struct FbxClipCurves {
   std::string name;
-  std::optional<std::int64_t> start, stop;        // ticks, as the stack says
-  std::vector<std::optional<FbxMotion>> motions;  // #models
-  std::map<Index, FbxPercent> percents;           // by object: of channels of blend shapes
+  std::optional<std::int64_t> start, stop;  // ticks, as the stack says
+  std::map<Index, FbxMotion> motions;       // by model
+  std::map<Index, FbxPercent> percents;     // by object: of channels of blend shapes
 };
 
 // The curves of a file, and the clips made of them.
 class FbxAnimations {
  public:
+  // Throws Error kLimit, which names the clip, where clips that share nodes of curves move far more than the file has.
   FbxAnimations(const FbxObjects& objects, const FbxModels& models, Warnings& warnings);
 
   // #models: does any clip move it, or hold it elsewhere than its rest; does one give it another scale than its rest's?
@@ -52,12 +53,16 @@ class FbxAnimations {
   // (or of what a track moves through), though none closer together than 1/48 s. What only steps becomes a track of
   // steps; a step among others two keys one after the other. What a clip holds elsewhere than the rest, without a
   // curve, gets one key where the clip begins.
+  //
+  // Throws Error kLimit, which names the clip, where tracks that share curves would have more numbers than 16 for each
+  // key of the file and 4 million.
   void addClips(Asset& asset, const std::vector<std::optional<Index>>& nodeOf,
                 const std::vector<FbxShapesInUse>& shapes, double scale) const;
 
  private:
   void readStack(Index stack);
   void readCurveNode(Index node, FbxClipCurves& clip);
+  void countMoved(const FbxClipCurves& clip);
   const FbxCurve* curveOf(Index node, std::string_view component);
 
   const FbxObjects& objects_;
@@ -66,6 +71,7 @@ class FbxAnimations {
   std::map<Index, std::optional<FbxCurve>> curves_;  // by object
   std::vector<FbxClipCurves> clips_;
   std::vector<bool> moves_, scales_;
+  std::size_t moved_ = 0;  // models and channels, of all clips
 };
 
 }  // namespace limber

@@ -85,7 +85,8 @@ FbxObjects::FbxObjects(const FbxFile& file) {
   sources_.resize(objects_.size());
   destinations_.resize(objects_.size());
   if (const FbxNode* connections = file.root.find("Connections")) {
-    for (const FbxNode& node : connections->children) addConnection(node);
+    std::set<Connection> known;
+    for (const FbxNode& node : connections->children) addConnection(node, known);
   }
 }
 
@@ -96,11 +97,13 @@ void FbxObjects::addObject(const FbxNode& node) {
                       fbxText(node, 2).value_or(std::string_view())});
 }
 
-void FbxObjects::addConnection(const FbxNode& node) {
+void FbxObjects::addConnection(const FbxNode& node, std::set<Connection>& known) {
   const auto source = byId_.find(fbxInteger(node, 1).value_or(0)),
              destination = byId_.find(fbxInteger(node, 2).value_or(0));
   if (source == byId_.end() || destination == byId_.end()) return;
   const std::string_view property = fbxText(node, 0) == "OP" ? fbxText(node, 3).value_or("") : "";
+  const bool isNew = known.emplace(source->second, destination->second, property).second;
+  if (!isNew && !is(source->second, "Material")) return;
   sources_[destination->second].push_back({source->second, property});
   destinations_[source->second].push_back({destination->second, property});
 }

@@ -3,9 +3,11 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "limber/core/types.h"
@@ -53,6 +55,7 @@ class FbxObjects {
   bool is(Index object, std::string_view className, std::string_view kind) const;
 
   // What is connected to an object and what it is connected to, in the order of the file; the scene's root is none.
+  // What is connected twice in one way counts once, but for materials.
   std::span<const Link> sources(Index object) const { return sources_[object]; }
   std::span<const Link> destinations(Index object) const { return destinations_[object]; }
 
@@ -63,7 +66,9 @@ class FbxObjects {
 
  private:
   void addObject(const FbxNode& node);
-  void addConnection(const FbxNode& node);
+  // Once for each of those in `known`; materials again, whose places in their model's list are their numbers.
+  using Connection = std::tuple<Index, Index, std::string_view>;  // source, destination, property
+  void addConnection(const FbxNode& node, std::set<Connection>& known);
 
   std::vector<FbxObject> objects_;
   std::map<std::int64_t, Index> byId_;

@@ -487,7 +487,7 @@ TEST(ImportFbx7, BlendShapesWithOneInBetween) {
 
 // A triangle with one channel of blend shapes; each shape moves all its points up by 1.
 Asset importChannel(const std::vector<std::vector<std::int64_t>>& pointsOfShapes, double percent,
-                    const std::vector<double>& full) {
+                    const std::vector<double>& full, const std::string& more = {}, const std::string& moreLinks = {}) {
   std::string objects =
       model(1, "Face", "Mesh") + triangle(3) + "Deformer: 5, \"Deformer::b\", \"BlendShape\" {\n}\n" +
       fmt::format("Deformer: 6, \"SubDeformer::c\", \"BlendShapeChannel\" {{\nDeformPercent: {}\n{}}}\n", percent,
@@ -501,7 +501,7 @@ Asset importChannel(const std::vector<std::vector<std::int64_t>>& pointsOfShapes
                            wholes("Indexes", pointsOfShapes[s]), array("Vertices", moves));
     links += link(id, 6);
   }
-  return importText(objects, links);
+  return importText(objects + more, links + moreLinks);
 }
 
 TEST(ImportFbx7, FullWeightsOfAShapesPointsAreWhatTheyMoveBy) {
@@ -546,6 +546,43 @@ TEST(ImportFbx7, ATakeMayHoldABlendShape) {
       link(1, 0) + link(3, 1) + link(5, 3) + link(6, 5) + link(7, 6) + link(11, 10) + link(12, 11) +
           link(12, 6, "DeformPercent"));
   EXPECT_EQ(trackOf(asset, "weights").values, std::vector<float>{0.75f});
+}
+
+TEST(ImportFbx7, CurvesThatTooMuchSharesAreRefused) {
+  std::vector<double> seconds, percents, full;
+  for (int k = 0; k < 2500; ++k) {
+    seconds.push_back(k / 30.0);
+    percents.push_back(k % 2);
+  }
+  for (int s = 1; s <= 1800; ++s) full.push_back(s);
+  const std::vector<std::vector<std::int64_t>> points(full.size(), {1});
+  const std::string stack =
+      "AnimationStack: 9010, \"AnimStack::Smile\", \"\" {\n}\nAnimationLayer: 9011, \"AnimLayer::Base\", \"\" {\n}\n"
+      "AnimationCurveNode: 9012, \"AnimCurveNode::\", \"\" {\n}\n" +
+      curve(9013, seconds, percents);
+  const std::string links =
+      link(9011, 9010) + link(9012, 9011) + link(9012, 6, "DeformPercent") + link(9013, 9012, "d|DeformPercent");
+  try {
+    importChannel(points, 0, full, stack, links);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::kLimit);
+    EXPECT_EQ(error.where(), "clip 'Smile'");
+  }
+}
+
+TEST(ImportFbx7, ConnectionsThatAreRepeatedCountOnceButMaterialsMayStandTwice) {
+  const std::string objects =
+      "Model: 1, \"Model::a\", \"Mesh\" {\n}\nGeometry: 2, \"Geometry::g\", \"Mesh\" {\n}\n"
+      "Material: 3, \"Material::m\", \"\" {\n}\n";
+  const std::string links = link(2, 1) + link(3, 1) + link(2, 1) + link(3, 1) + link(2, 1, "Other");
+  const FbxFile file = parseFbx(asBytes("FBXHeaderExtension:  {\nFBXVersion: 7400\n}\nObjects:  {\n" + objects +
+                                        "}\nConnections:  {\n" + links + "}\n"));
+  const FbxObjects read(file);
+  EXPECT_EQ(read.sources(0).size(), 4u);
+  EXPECT_EQ(read.sources(0, "Geometry"), std::vector<Index>{1});
+  EXPECT_EQ(read.sources(0, "Material"), (std::vector<Index>{2, 2}));
+  EXPECT_EQ(read.destinations(1).size(), 2u);
 }
 
 // A triangle with such layers on model 1.

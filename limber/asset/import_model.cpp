@@ -298,10 +298,11 @@ Asset unpack(ByteSpan message) {
   return asset;
 }
 
-// A text file of a megabyte takes Assimp about a tenth of a second and 20 megabytes; hostile ones get ten times that.
+// A text file of a megabyte takes Assimp about a tenth of a second and 20 megabytes; hostile ones get twenty
+// times that time and twice the memory, and what a small file with its pictures takes.
 SandboxLimits limitsFor(std::size_t size) {
   SandboxLimits limits;
-  limits.memory = (std::size_t{512} << 20) + 200 * size;
+  limits.memory = (std::size_t{384} << 20) + 48 * size;
   limits.seconds = 1 + 2 * static_cast<double>(size) / (1 << 20);
   return limits;
 }

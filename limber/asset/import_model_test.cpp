@@ -16,6 +16,7 @@
 #include "limber/asset/rig_io.h"
 #include "limber/asset/scene_graph.h"
 #include "limber/asset/testing/document_json.h"
+#include "limber/core/sanitizers.h"
 #include "temporary_folder.h"
 #include "warning_kinds.h"
 
@@ -675,6 +676,18 @@ TEST(ImportModel, EveryTruncationIsAnErrorOrAModel) {
         EXPECT_EQ(std::string(error.what()).rfind(name, 0), 0u) << error.what();
       }
     }
+  }
+}
+
+TEST(ImportModel, ASmallFileDoesNotGetAllMemory) {
+  if (kAddressSanitizer) GTEST_SKIP() << "memory is not limited there";
+  const Resolver huge = [](std::string_view) { return Bytes(std::size_t{512} << 20); };
+  try {
+    import(kSquareObj, "square.obj", huge);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::kLimit);
+    EXPECT_THAT(error.what(), HasSubstr("asks for more memory than a file of its size may"));
   }
 }
 

@@ -169,7 +169,7 @@ std::string dumpJson(const Json& json, int indent) {
 std::string dumpReport(const Json& json, int indent) {
   std::string text = json.dump(indent, ' ', false, Json::error_handler_t::replace);
   const auto isControl = [](std::string_view at) {  // beyond those that JSON escapes anyway
-    return at[0] == '\x7f' || (at.size() > 1 && at[0] == '\xc2' && at[1] >= '\x80' && at[1] <= '\x9f');
+    return at[0] == '\x7f' || (at.size() > 1 && at[0] == '\xc2' && static_cast<unsigned char>(at[1]) < 0xa0);
   };
   std::string plain;
   std::size_t done = 0;

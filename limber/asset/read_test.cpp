@@ -139,6 +139,47 @@ TEST(ReadAsset, MissingOrForeignImagesStayReferences) {
   }
 }
 
+TEST(ReadAsset, AFileThatManyBuffersNameIsRefused) {
+  Json json = {{"asset", {{"version", "2.0"}}}};
+  for (const char* uri : {"a.bin", "./a.bin", "%61.bin", "a.bin"}) {
+    json["buffers"].push_back({{"byteLength", 4}, {"uri", uri}});
+  }
+  int reads = 0;
+  const Resolver resolver = [&](std::string_view) {
+    ++reads;
+    return Bytes(std::size_t{24} << 20);
+  };
+  const Failure failure = failureOf(json.dump(), "m.gltf", resolver);
+  EXPECT_EQ(failure.code, ErrorCode::kLimit);
+  EXPECT_THAT(failure.line, HasSubstr("m.gltf: buffers[3]: its file \"a.bin\" was named before"));
+  EXPECT_EQ(reads, 3);
+  json["buffers"].erase(3);
+  EXPECT_NO_THROW(readAsset(asBytes(json.dump()), "m.gltf", resolver));
+}
+
+TEST(ReadAsset, AnImageThatCannotBeReadIsLookedForOnce) {
+  const Json image = {{"uri", "notes.txt"}};
+  const Json json = {{"asset", {{"version", "2.0"}}}, {"images", std::vector<Json>(50, image)}};
+  int reads = 0;
+  const Resolver resolver = [&](std::string_view) {
+    ++reads;
+    return Bytes(100);
+  };
+  const Asset asset = readAsset(asBytes(json.dump()), "m.gltf", resolver);
+  EXPECT_EQ(reads, 1);
+  EXPECT_EQ(asset.warnings.items().at(0).count, 50u);
+}
+
+TEST(ReadAsset, ErrorsQuoteAShortPieceOfTheText) {
+  const std::string digits(1 << 20, '1');
+  EXPECT_LT(failureOf("{\"a\":" + digits + "e999999}").line.size(), 300u);
+  EXPECT_LT(failureOf("{\"a\":\"" + digits + "\n\"}").line.size(), 300u);
+  EXPECT_LT(failureOf("{\"asset\":{\"version\":\"1." + digits + "\"}}").line.size(), 300u);
+  EXPECT_LT(failureOf("{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":1,\"uri\":\"" + digits + "\"}]}")
+                .line.size(),
+            300u);
+}
+
 TEST(ReadAsset, FromDiskWithFilesBeside) {
   const TemporaryFolder folder;
   const GltfBuilder model = modelBeside("data/a%20b.bin", "p.png");

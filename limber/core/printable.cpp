@@ -31,6 +31,14 @@ std::string printable(std::string_view line) {
   return withoutControls(line, "");
 }
 
+std::string shortened(std::string_view word, std::size_t most) {
+  if (word.size() <= most) return printable(word);
+  const auto isInside = [&](std::size_t at) { return (static_cast<unsigned char>(word[at]) & 0xc0) == 0x80; };
+  std::size_t end = most;
+  while (end > 0 && most - end < 3 && isInside(end)) --end;
+  return printable(word.substr(0, end)) + "...";
+}
+
 std::string printableText(std::string_view text) {
   return withoutControls(text, "\n\t");
 }

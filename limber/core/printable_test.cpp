@@ -13,6 +13,15 @@ TEST(Printable, ShowsWhatATerminalWouldObey) {
             "\\u009b2J");
 }
 
+TEST(Shortened, CutsBetweenCharacters) {
+  EXPECT_EQ(shortened("Hüfte"), "Hüfte");
+  EXPECT_EQ(shortened(std::string(100, 'a')), std::string(100, 'a'));
+  EXPECT_EQ(shortened(std::string(1 << 20, '1')), std::string(100, '1') + "...");
+  EXPECT_EQ(shortened("Hüfte", 2), "H...");
+  EXPECT_EQ(shortened("Hüfte", 3), "Hü...");
+  EXPECT_EQ(shortened("\x07\x07", 1), "\\x07...");
+}
+
 TEST(Printable, LeavesWordsAlone) {
   const std::string words = "Hüfte 腰 \xc2\xa0 ~ \"C:\\x\"";
   EXPECT_EQ(printable(words), words);

@@ -20,7 +20,7 @@ constexpr std::uint32_t kFirstWithLongOffsets = 7500;
 
 // Together all arrays of a file may inflate to so many times its size, and this much more. Blender's densest files stay
 // below 20; deflate itself would allow 1032.
-constexpr std::size_t kMostInflation = 200, kFreeInflation = std::size_t{16} << 20;
+constexpr std::size_t kMostInflation = 32, kFreeInflation = std::size_t{16} << 20;
 
 class BinaryParser {
  public:

@@ -211,6 +211,10 @@ TEST(FbxParse, DepthAndSizesAreBounded) {
   const std::string bomb =
       "d" + raw(std::uint32_t{0xffffffff}) + raw(std::uint32_t{1}) + raw(std::uint32_t{10}) + std::string(10, 'x');
   EXPECT_EQ(codeOf(write.header() + write.leaf(27, "Bomb", {bomb}) + write.end()), ErrorCode::kBadData);
+  // One of 20 MB in 20 kB, which deflate allows: it is not even tried.
+  const std::string dense =
+      "d" + raw(std::uint32_t{2500000}) + raw(std::uint32_t{1}) + raw(std::uint32_t{20000}) + std::string(20000, 'x');
+  EXPECT_EQ(codeOf(write.header() + write.leaf(27, "Bomb", {dense}) + write.end()), ErrorCode::kLimit);
 }
 
 }  // namespace

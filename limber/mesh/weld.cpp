@@ -203,7 +203,8 @@ class Welder {
     }
   }
 
-  // Pairs of vertices on open edges of different ranges, each the nearest of the other, within what the grids explain.
+  // Pairs of vertices on open edges of different ranges, of which one has a grid at least, each the nearest of the
+  // other, within what the grids explain.
   // By distance, the lower vertex first in each.
   std::vector<Match> mutualMatches(const std::vector<Index>& openVertices) const {
     const auto gridOf = [&](Index v) { return ranges_[rangeOf_[v]].quantisation; };
@@ -212,14 +213,11 @@ class Welder {
     for (const Index v : openVertices) most = std::max(most, gridOf(v) + rounding(v));
     const auto reachOf = [&](Index v) { return std::min(gridOf(v) + rounding(v) + most, capOf(v)); };
     PointCells cells(positions_, openVertices.size());
-    for (const Index v : openVertices) {
-      if (gridOf(v) > 0) cells.add(v, reachOf(v));
-    }
+    for (const Index v : openVertices) cells.add(v, reachOf(v));
     std::map<Pair, Match> nearest;  // by vertex and the other range
     for (const Index a : openVertices) {
-      if (!(gridOf(a) > 0)) continue;
       cells.forNear(positions_[a], reachOf(a), [&](Index b) {
-        if (rangeOf_[a] == rangeOf_[b]) return;
+        if (rangeOf_[a] == rangeOf_[b] || !(gridOf(a) + gridOf(b) > 0)) return;
         const double allowed = std::min({gridOf(a) + rounding(a) + gridOf(b) + rounding(b), capOf(a), capOf(b)});
         const Match match = {squaredDistance(a, b), a, b};
         if (match.squaredDistance > allowed * allowed) return;

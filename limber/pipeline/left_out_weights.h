@@ -13,7 +13,10 @@ namespace limber {
 std::vector<Index> outerVertices(const FigureSurface& surface);
 
 // Has inner shells take the weights of the vertices of the surface that are nearest to them (outerVertices), and
-// surroundings follow joint 0, the root. weights  of surface.prepared.mesh Cost: that of outerVertices.
+// surroundings follow joint 0, the root.
+//
+// weights  of surface.prepared.mesh
+// Cost: that of outerVertices.
 void bindLeftOut(const FigureSurface& surface, SkinWeights& weights);
 
 }  // namespace limber

@@ -28,6 +28,7 @@ constexpr double kMaxAway = 1;               // of the figure's size, from a flo
 constexpr double kMinThickness = 0.12;       // of the figure along a floor's normal, of its size
 constexpr double kMaxFill = 0.5;             // of the figure's box, by its volume
 constexpr double kMinColliderFit = 0.6;      // size of the figure along each axis, of that of a box round it
+constexpr double kMinInCollider = 0.9;       // of the figure's vertices within a box round it
 constexpr double kMaxPedestal = 0.5;         // height of a pedestal, of that of the figure
 constexpr double kSole = 0.03;               // of the figure's height, from its lowest point: what stands on a pedestal
 constexpr double kMinStride = 0.15;          // of the extent of the feet, the gap between them
@@ -35,12 +36,12 @@ constexpr std::size_t kSampled = 200;        // vertices or triangles of a compo
 constexpr double kStrayArea = 0.01;          // of the figure's largest component: smaller ones may lie anywhere
 
 constexpr std::size_t kMaxShells = 32;      // components, the largest
-constexpr double kMinCopyArea = 0.5;        // of the outer surface
+constexpr double kMinCopyArea = 0.25;       // of the outer surface
 constexpr double kMaxCopyArea = 1.1;        // of the outer surface: what has more is no copy, but a figure in a box
-constexpr double kMinEnclosed = 0.9;        // of a shell's vertices within the outer surface
+constexpr double kMinEnclosed = 0.75;       // of a shell's area within the outer surface
 constexpr double kMaxShellDistance = 0.03;  // sizes of the outer surface, of a shell from it in the mean
 constexpr double kMaxBareDistance = 0.06;   // sizes of the outer surface, from it to a shell below it
-constexpr double kMinCovered = 0.85;        // of the outer surface's vertices with a shell below them
+constexpr double kMinCovered = 0.85;        // of the outer surface's area with a shell below it
 
 // A connected component of the surface.
 struct Component {
@@ -100,6 +101,22 @@ std::vector<Vec3> samplesOf(const TriMesh& mesh, std::span<const Index> vertices
   std::vector<Vec3> samples;
   const std::size_t count = std::min(kSampled, vertices.size());
   for (std::size_t i = 0; i < count; ++i) samples.push_back(mesh.position(vertices[i * vertices.size() / count]));
+  return samples;
+}
+
+struct AreaSample {
+  Vec3 place;
+  double area;
+};
+
+// The middles of evenly chosen triangles of a component.
+std::vector<AreaSample> areaSamplesOf(const TriMesh& mesh, const Component& component) {
+  std::vector<AreaSample> samples;
+  const std::size_t count = std::min(kSampled, component.triangles.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    const Triangle& t = mesh.triangles[component.triangles[i * component.triangles.size() / count]];
+    samples.push_back({(mesh.position(t[0]) + mesh.position(t[1]) + mesh.position(t[2])) / 3, triangleArea(mesh, t)});
+  }
   return samples;
 }
 
@@ -214,7 +231,7 @@ struct Backdrop {
     const std::vector<Vec3> samples = samplesOf(mesh, figure.vertices);
     const auto enclosed = std::count_if(samples.begin(), samples.end(),
                                         [&](const Vec3& sample) { return std::abs(winding.at(sample)) > 0.5; });
-    return static_cast<double>(enclosed) >= kMinEnclosed * static_cast<double>(samples.size());
+    return static_cast<double>(enclosed) >= kMinInCollider * static_cast<double>(samples.size());
   }
 };
 
@@ -314,27 +331,28 @@ std::vector<Component> surroundingsAmong(const TriMesh& mesh, std::vector<Compon
   return surroundings;
 }
 
-// Whether one component is a copy of another one's surface within it.
+// Whether one component is a copy of another one's surface within it. Where the outer one is thin, as in fingers, a
+// copy may come out of it.
 bool isInnerShell(const TriMesh& mesh, const Component& inner, const Component& outer) {
+  const double size = outer.box.longestSide();
   if (inner.area < kMinCopyArea * outer.area || inner.area > kMaxCopyArea * outer.area) return false;
-  if (!isWithin(inner.box, outer.box, 0)) return false;
+  if (!isWithin(inner.box, outer.box, kMaxShellDistance * size)) return false;
   const TriMesh outerMesh = meshOf(mesh, outer);
   const WindingNumber winding(outerMesh);
   const Bvh outerSurface(outerMesh), innerSurface(mesh, inner.triangles);
-  const std::vector<Vec3> innerSamples = samplesOf(mesh, inner.vertices);
-  double enclosed = 0, distance = 0;
-  for (const Vec3& sample : innerSamples) {
-    if (std::abs(winding.at(sample)) > 0.5) ++enclosed;
-    distance += outerSurface.nearestPoint(sample).distance;
+  double area = 0, enclosed = 0, distance = 0;
+  for (const AreaSample& sample : areaSamplesOf(mesh, inner)) {
+    area += sample.area;
+    if (std::abs(winding.at(sample.place)) > 0.5) enclosed += sample.area;
+    distance += sample.area * outerSurface.nearestPoint(sample.place).distance;
   }
-  const auto count = static_cast<double>(innerSamples.size());
-  const double size = outer.box.longestSide();
-  if (enclosed < kMinEnclosed * count || distance > kMaxShellDistance * size * count) return false;
-  const std::vector<Vec3> outerSamples = samplesOf(mesh, outer.vertices);
-  const auto covered = std::count_if(outerSamples.begin(), outerSamples.end(), [&](const Vec3& sample) {
-    return innerSurface.nearestPoint(sample).distance < kMaxBareDistance * size;
-  });
-  return static_cast<double>(covered) >= kMinCovered * static_cast<double>(outerSamples.size());
+  if (enclosed < kMinEnclosed * area || distance > kMaxShellDistance * size * area) return false;
+  double outerArea = 0, covered = 0;
+  for (const AreaSample& sample : areaSamplesOf(mesh, outer)) {
+    outerArea += sample.area;
+    if (innerSurface.nearestPoint(sample.place).distance < kMaxBareDistance * size) covered += sample.area;
+  }
+  return covered >= kMinCovered * outerArea;
 }
 
 // Moves inner shells out of the components.

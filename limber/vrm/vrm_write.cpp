@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "limber/asset/clip_io.h"
@@ -64,8 +65,14 @@ Json standInTPose(Asset& asset, bool isVrm) {
   }
   const TPose tPose = madeTPose(asset, rig, bones);
   setNodePose(asset, rig, tPose.pose);
-  constexpr double kFacesFront = 1e-6;  // radians
-  if (angleBetween(tPose.toVrm, Quat::Identity()) > kFacesFront) turnScene(asset, tPose.toVrm, "facing_front");
+  constexpr double kFacesFront = 1e-6, kTold = 0.02;  // radians
+  const double turn = angleBetween(tPose.toVrm, Quat::Identity());
+  if (turn > kFacesFront) turnScene(asset, tPose.toVrm, "facing_front");
+  if (turn > kTold) {
+    asset.warnings.add(
+        "vrm-turned",
+        fmt::format("a VRM faces +Z: the model is turned by {:.0f} degrees, with its clips", turn * 180 / kPi));
+  }
   Json humanBones = Json::object();
   for (const HumanoidJoint& bone : bones) humanBones[std::string(bone.bone)] = {{"node", rig.jointNode[bone.joint]}};
   return {{"humanBones", std::move(humanBones)}};

@@ -251,6 +251,16 @@ TEST(MakeVrm, AHeadThatLooksAsideLooksAheadAgain) {
   EXPECT_THAT(warningKinds(asset.warnings), ElementsAre("vrm-pose"));
 }
 
+TEST(MakeVrm, TellsThatItTurnsAModelThatFacesElsewhere) {
+  Asset asset =
+      avatarOf(testing::inRestPose(mixamoPerson(), {{"mixamorig:Hips", testing::turn(Vec3::UnitY(), 90)}}));
+  makeVrm(asset);
+  const auto turned = std::find_if(asset.warnings.items().begin(), asset.warnings.items().end(),
+                                   [](const Warning& warning) { return warning.kind == "vrm-turned"; });
+  ASSERT_NE(turned, asset.warnings.items().end());
+  EXPECT_THAT(turned->message, HasSubstr("by 90 degrees"));
+}
+
 TEST(MakeVrm, TellsOfThePoseOfAModelThatNoClipShows) {
   Asset asset = avatarOf(mixamoPerson());
   poseAvatar(asset);
