@@ -35,10 +35,12 @@ constexpr double kMinStride = 0.15;          // of the extent of the feet, the g
 constexpr std::size_t kSampled = 200;        // vertices or triangles of a component
 constexpr double kStrayArea = 0.01;          // of the figure's largest component: smaller ones may lie anywhere
 
-constexpr std::size_t kMaxShells = 32;      // components, the largest
+constexpr std::size_t kMaxShells = 64;      // components, the largest
 constexpr double kMinCopyArea = 0.25;       // of the outer surface
 constexpr double kMaxCopyArea = 1.1;        // of the outer surface: what has more is no copy, but a figure in a box
 constexpr double kMinEnclosed = 0.75;       // of a shell's area within the outer surface
+constexpr double kMostOfSurface = 0.5;      // of the figure's area that has shells
+constexpr double kMaxRest = 0.05;           // of the figure's area, of what else lies within
 constexpr double kMaxShellDistance = 0.03;  // sizes of the outer surface, of a shell from it in the mean
 constexpr double kMaxBareDistance = 0.06;   // sizes of the outer surface, from it to a shell below it
 constexpr double kMinCovered = 0.85;        // of the outer surface's area with a shell below it
@@ -331,6 +333,16 @@ std::vector<Component> surroundingsAmong(const TriMesh& mesh, std::vector<Compon
   return surroundings;
 }
 
+// How much of a component's area lies within what a winding number is of.
+double enclosedShare(const TriMesh& mesh, const Component& component, const WindingNumber& winding) {
+  double area = 0, enclosed = 0;
+  for (const AreaSample& sample : areaSamplesOf(mesh, component)) {
+    area += sample.area;
+    if (std::abs(winding.at(sample.place)) > 0.5) enclosed += sample.area;
+  }
+  return area > 0 ? enclosed / area : 0;
+}
+
 // Whether one component is a copy of another one's surface within it. Where the outer one is thin, as in fingers, a
 // copy may come out of it.
 bool isInnerShell(const TriMesh& mesh, const Component& inner, const Component& outer) {
@@ -338,15 +350,14 @@ bool isInnerShell(const TriMesh& mesh, const Component& inner, const Component& 
   if (inner.area < kMinCopyArea * outer.area || inner.area > kMaxCopyArea * outer.area) return false;
   if (!isWithin(inner.box, outer.box, kMaxShellDistance * size)) return false;
   const TriMesh outerMesh = meshOf(mesh, outer);
-  const WindingNumber winding(outerMesh);
+  if (enclosedShare(mesh, inner, WindingNumber(outerMesh)) < kMinEnclosed) return false;
   const Bvh outerSurface(outerMesh), innerSurface(mesh, inner.triangles);
-  double area = 0, enclosed = 0, distance = 0;
+  double area = 0, distance = 0;
   for (const AreaSample& sample : areaSamplesOf(mesh, inner)) {
     area += sample.area;
-    if (std::abs(winding.at(sample.place)) > 0.5) enclosed += sample.area;
     distance += sample.area * outerSurface.nearestPoint(sample.place).distance;
   }
-  if (enclosed < kMinEnclosed * area || distance > kMaxShellDistance * size * area) return false;
+  if (distance > kMaxShellDistance * size * area) return false;
   double outerArea = 0, covered = 0;
   for (const AreaSample& sample : areaSamplesOf(mesh, outer)) {
     outerArea += sample.area;
@@ -355,18 +366,34 @@ bool isInnerShell(const TriMesh& mesh, const Component& inner, const Component& 
   return covered >= kMinCovered * outerArea;
 }
 
-// Moves inner shells out of the components.
+// Moves inner shells out of the components. Where most of the surface has one, what else lies within a part that has
+// one belongs to the shell, too, however little of it is left there.
 std::vector<Component> takeInnerShells(const TriMesh& mesh, std::vector<Component>& components) {
-  std::vector<Component> shells;
+  std::vector<Component> shells, outers;
+  double all = 0, doubled = 0;
   for (std::size_t inner = std::min(kMaxShells, components.size()); inner-- > 1;) {
     const auto end = components.begin() + static_cast<std::ptrdiff_t>(inner);
-    if (std::none_of(components.begin(), end,
-                     [&](const Component& outer) { return isInnerShell(mesh, *end, outer); })) {
-      continue;
-    }
+    const auto outer =
+        std::find_if(components.begin(), end, [&](const Component& other) { return isInnerShell(mesh, *end, other); });
+    if (outer == end) continue;
     shells.push_back(*end);
+    outers.push_back(*outer);
+    doubled += outer->area;
     components.erase(end);
   }
+  for (const Component& component : components) all += component.area;
+  if (doubled < kMostOfSurface * all) return shells;
+  std::vector<WindingNumber> within;
+  for (const Component& outer : outers) within.emplace_back(meshOf(mesh, outer));
+  const auto isWithinOne = [&](const Component& component) {
+    return component.area < kMaxRest * all && std::any_of(within.begin(), within.end(), [&](const auto& winding) {
+             return enclosedShare(mesh, component, winding) >= kMinEnclosed;
+           });
+  };
+  const auto rest = std::stable_partition(components.begin(), components.end(),
+                                          [&](const Component& component) { return !isWithinOne(component); });
+  shells.insert(shells.end(), rest, components.end());
+  components.erase(rest, components.end());
   return shells;
 }
 
@@ -415,45 +442,49 @@ void warnOfFaces(const MendedFaces& mended, Warnings& warnings) {
       {}, mended.reversed);
 }
 
-// Takes the triangles of vertices out of a mesh; returns how many.
-std::size_t takeTrianglesOut(std::span<const Index> vertices, TriMesh& mesh) {
-  std::vector<bool> isOut(mesh.vertexCount(), false);
-  for (const Index v : vertices) isOut[v] = true;
-  return std::erase_if(mesh.triangles, [&](const Triangle& t) { return isOut[t[0]]; });
-}
-
 }  // namespace
 
 FigureSurface figureSurface(std::span<const Vec3f> positions, std::span<const Triangle> triangles,
                             std::span<const StoredVertices> stored) {
   FigureSurface result{prepareMesh(positions, triangles, stored), {}, {}};
   PreparedMesh& prepared = result.prepared;
-  MendedFaces mended = mendFaces(prepared.mesh);
+  const MendedFaces mended = mendFaces(prepared.mesh);
   Components components = Components::of(prepared.mesh);
   std::vector<bool> isInner, isAround;
+  bool isAlone = true;
   if (components.list.size() > 1) {
-    isInner = sourceVerticesOf(prepared, takeInnerShells(prepared.mesh, components.list));
-    isAround = sourceVerticesOf(prepared, surroundingsAmong(prepared.mesh, components.list));
+    const std::vector<Component> shells = takeInnerShells(prepared.mesh, components.list);
+    const std::vector<Component> surroundings = surroundingsAmong(prepared.mesh, components.list);
+    isInner = sourceVerticesOf(prepared, shells);
+    isAround = sourceVerticesOf(prepared, surroundings);
+    isAlone = shells.empty() && surroundings.empty();
   }
-  if (std::find(isAround.begin(), isAround.end(), true) != isAround.end()) {
-    std::vector<Triangle> figure;  // alone, for the frame is that of the figure
-    for (const Triangle& t : triangles) {
-      if (!isAround[t[0]]) figure.push_back(t);
+  if (isAlone) {
+    warnOfFaces(mended, prepared.warnings);
+    return result;
+  }
+  std::vector<Triangle> figure;  // alone, for the frame is that of the figure
+  std::size_t inner = 0, around = 0;
+  for (const Triangle& t : triangles) {
+    if (isInner[t[0]]) {
+      ++inner;
+    } else if (isAround[t[0]]) {
+      ++around;
+    } else {
+      figure.push_back(t);
     }
-    const Warnings before = std::exchange(prepared, prepareMesh(positions, figure, stored)).warnings;
-    prepared.warnings = withFarVerticesOf(before, prepared.warnings);
-    mended = mendFaces(prepared.mesh);
-    result.surroundings = weldedFrom(isAround, prepared);
-    prepared.warnings.add("surroundings",
-                          "triangles of floors, walls, pedestals or boxes round the figure are no part of it; they "
-                          "follow the root joint (take them out of the file if they are not to move)",
-                          {}, triangles.size() - figure.size());
   }
-  warnOfFaces(mended, prepared.warnings);
+  const Warnings before = std::exchange(prepared, prepareMesh(positions, figure, stored)).warnings;
+  prepared.warnings = withFarVerticesOf(before, prepared.warnings);
+  warnOfFaces(mendFaces(prepared.mesh), prepared.warnings);
   result.innerShell = weldedFrom(isInner, prepared);
-  if (result.innerShell.empty()) return result;
+  result.surroundings = weldedFrom(isAround, prepared);
+  prepared.warnings.add("surroundings",
+                        "triangles of floors, walls, pedestals or boxes round the figure are no part of it; they "
+                        "follow the root joint (take them out of the file if they are not to move)",
+                        {}, around);
   prepared.warnings.add("inner-shell", "triangles of a copy of the surface within it take the weights of the outer one",
-                        {}, takeTrianglesOut(result.innerShell, prepared.mesh));
+                        {}, inner);
   return result;
 }
 

@@ -162,6 +162,20 @@ TEST(FigureSurface, CopyWithinTheSurfaceIsLeftOut) {
   }
 }
 
+// A copy may come out of thin parts, and hardly be left of small ones.
+TEST(FigureSurface, RoughCopiesOfManyPartsAreLeftOut) {
+  TriMesh body = ballMesh(1, {0, 0, 0}), copy = ballMesh(0.97f, {0, 0, 0});
+  for (Vec3f& p : copy.positions) {
+    if (p.y() > 0.95f) p.y() += 0.06f;
+  }
+  const TriMesh button = boxMesh({0.1f, 0.1f, 0.1f}, {0, 0, 1.02f}),
+                within = boxMesh({0.03f, 0.03f, 0.03f}, {0, 0, 0.9f});
+  const TriMesh whole = testing::joined(body, button);
+  const FigureSurface surface = surfaceOf(testing::joined(whole, testing::joined(copy, within)));
+  EXPECT_EQ(surface.innerShell.size(), copy.positions.size() + within.positions.size());
+  expectBodyAlone(surface, whole);
+}
+
 TEST(FigureSurface, WhatIsWithinAModelAndNoCopyStays) {
   EXPECT_TRUE(surfaceOf(testing::joined(ballMesh(1, {0, 0, 0}), ballMesh(0.6f, {0, 0, 0}))).innerShell.empty());
 }
