@@ -21,11 +21,12 @@ constexpr std::array<std::string_view, 3> kAxes = {"d|X", "d|Y", "d|Z"};
 constexpr std::string_view kPercent = "d|DeformPercent";
 
 constexpr double kTolerance = 1e-4;  // radians, or of what a track moves through
+constexpr double kLeastMove = 0.1;   // of its values: what moves through less is mostly noise of the numbers
 // Keys of the file that are no farther apart than a picture of a film takes were baked: nothing comes between them.
 // Parts as short of longer spans are divided for a larger error only.
 constexpr std::int64_t kShortSpan = kFbxTicksPerSecond / 24;
 constexpr double kShortSpanTolerance = 5;                          // times as large
-constexpr std::int64_t kShortestSplit = kFbxTicksPerSecond / 480;  // spans up to here are not divided
+constexpr std::int64_t kShortestSplit = kFbxTicksPerSecond / 120;  // spans up to here are not divided
 constexpr int kMostHalvings = 10;
 // Together all clips of a document may have so many keys more than their curves, for each of these and in any case.
 constexpr std::size_t kMorePerKey = 16, kMoreKeys = std::size_t{1} << 20;
@@ -90,7 +91,9 @@ class TrackSampler {
       left.col(k) = at_(keys[static_cast<std::size_t>(k)], true);
     }
     double reach = 0;
-    for (Eigen::Index k = 0; k < count; ++k) reach = std::max(reach, (here.col(k) - here.col(0)).norm());
+    for (Eigen::Index k = 0; k < count; ++k) {
+      reach = std::max({reach, (here.col(k) - here.col(0)).norm(), kLeastMove * here.col(k).norm()});
+    }
     tolerance_ = isRotation_ ? kTolerance : kTolerance * reach;
     // Whether it stands still between all keys and jumps at some.
     bool steps = false, stands = true;

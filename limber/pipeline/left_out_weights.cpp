@@ -19,8 +19,8 @@ void bindLeftOut(const FigureSurface& surface, SkinWeights& weights) {
   for (const Index v : surface.surroundings) bindTo(0, v, weights);
   const std::vector<Index> outer = outerVertices(surface);
   for (std::size_t i = 0; i < outer.size(); ++i) {
-    const std::ptrdiff_t from = std::ptrdiff_t{outer[i]} * weights.slots;
-    const std::ptrdiff_t to = std::ptrdiff_t{surface.innerShell[i]} * weights.slots;
+    const std::ptrdiff_t from = static_cast<std::ptrdiff_t>(outer[i]) * weights.slots;
+    const std::ptrdiff_t to = static_cast<std::ptrdiff_t>(surface.innerShell[i]) * weights.slots;
     std::copy_n(weights.joints.begin() + from, weights.slots, weights.joints.begin() + to);
     std::copy_n(weights.weights.begin() + from, weights.slots, weights.weights.begin() + to);
   }

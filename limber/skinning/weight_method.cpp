@@ -1,5 +1,6 @@
 #include "limber/skinning/weight_method.h"
 
+#include <algorithm>
 #include <optional>
 #include <string>
 
@@ -20,12 +21,15 @@ namespace {
 WeightResult withLooseVertices(WeightResult result, const BareSurface& surface, const TriMesh& mesh) {
   std::vector<Index> from(mesh.vertexCount(), kNoIndex);
   for (Index v = 0; v < surface.source.size(); ++v) from[surface.source[v]] = v;
+  for (Index& v : result.bridged) v = surface.source[v];
   const Bvh bvh(surface.mesh);
   for (Index v = 0; v < from.size(); ++v) {
-    if (from[v] == kNoIndex) from[v] = nearestCorner(surface.mesh, bvh.nearestPoint(mesh.position(v)));
+    if (from[v] != kNoIndex) continue;
+    from[v] = nearestCorner(surface.mesh, bvh.nearestPoint(mesh.position(v)));
+    result.bridged.push_back(v);
   }
+  std::sort(result.bridged.begin(), result.bridged.end());
   result.weights = expandWeights(result.weights, from);
-  for (Index& v : result.bridged) v = surface.source[v];
   return result;
 }
 

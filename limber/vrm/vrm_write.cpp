@@ -68,10 +68,9 @@ Json standInTPose(Asset& asset, bool isVrm) {
   constexpr double kFacesFront = 1e-6, kTold = 0.02;  // radians
   const double turn = angleBetween(tPose.toVrm, Quat::Identity());
   if (turn > kFacesFront) turnScene(asset, tPose.toVrm, "facing_front");
-  if (turn > kTold) {
-    asset.warnings.add(
-        "vrm-turned",
-        fmt::format("a VRM faces +Z: the model is turned by {:.0f} degrees, with its clips", turn * 180 / kPi));
+  if (turn > kTold && !asset.document.animations.empty()) {
+    asset.warnings.add("vrm-turned", fmt::format("a VRM faces +Z: clips are turned by {:.0f} degrees with the model",
+                                                 turn * 180 / kPi));
   }
   Json humanBones = Json::object();
   for (const HumanoidJoint& bone : bones) humanBones[std::string(bone.bone)] = {{"node", rig.jointNode[bone.joint]}};

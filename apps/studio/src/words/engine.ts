@@ -105,7 +105,7 @@ const warnings: Named = {
   'far-vertices': 'points far away from the rest of the model do not count for its size',
   'repeated-faces': 'faces that are there twice count once', 'reversed-faces': 'faces that lie the wrong way round are taken the other way round',
   'inner-shell': 'a copy of the surface within it follows the outer one', 'surroundings': 'floors, walls and boxes round the figure follow its root joint',
-  'joined-binds': 'parts that were bound in another pose are brought to that of the joints', 'vrm-turned': 'the model is turned to face +Z, with its clips',
+  'joined-binds': 'parts that were bound in another pose are brought to that of the joints', 'vrm-turned': 'clips are turned with the model, which faces +Z',
   'moving-parents': 'the movement of nodes above the joints is part of the clips', 'still-parents': 'what hangs on nodes above the joints stands still',
   'negative-times': 'clips with keys before 0 s begin there now', 'missing-targets': 'movements of nodes that are not there are left out',
   'degenerate-triangles': 'triangles without area are left out of the computation', 'no-bone-in-sight': 'no bone is in sight of any point of the surface',

@@ -683,7 +683,7 @@ export const german = {
   'faces that are there twice count once': 'Flächen, die doppelt da sind, zählen einmal',
   'faces that lie the wrong way round are taken the other way round': 'Flächen, die verkehrt herum liegen, werden umgekehrt gerechnet',
   'parts that were bound in another pose are brought to that of the joints': 'Teile, die in einer anderen Haltung gebunden sind, kommen in die der Gelenke',
-  'the model is turned to face +Z, with its clips': 'das Modell blickt nun nach +Z, auch in seinen Animationen',
+  'clips are turned with the model, which faces +Z': 'Animationen werden mit dem Modell gedreht, das nach +Z blickt',
   'the movement of nodes above the joints is part of the clips': 'die Bewegung von Knoten über den Gelenken ist Teil der Animationen',
   'what hangs on nodes above the joints stands still': 'was an Knoten über den Gelenken hängt, steht still',
   'clips with keys before 0 s begin there now': 'Animationen, die vor 0 s begannen, beginnen nun dort',
