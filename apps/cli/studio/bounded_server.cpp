@@ -209,6 +209,10 @@ bool hasBody(const httplib::Request& request) {
 BoundedServer::BoundedServer(SSL_CTX* tls, std::size_t most) : tls_(tls) {
   new_task_queue = [most] { return new BoundedPool(most); };
   set_payload_max_length(0);
+  set_error_handler([](const httplib::Request&, httplib::Response& response) {
+    // Said to who would send a further request already.
+    if (!response.has_header("Connection")) response.set_header("Connection", "close");
+  });
 }
 
 bool BoundedServer::process_and_close_socket(socket_t socket) {

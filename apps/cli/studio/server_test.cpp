@@ -126,6 +126,7 @@ TEST_F(StudioServer, ABodyIsNoRequest) {
     const std::string answer = answerTo(one.request + inner);
     EXPECT_THAT(answer, StartsWith("HTTP/1.1 " + one.status)) << one.request.substr(0, 200);
     EXPECT_THAT(answer, Not(HasSubstr("HTTP/1.1 2"))) << one.request.substr(0, 200);
+    EXPECT_THAT(answer, HasSubstr("Connection: close")) << one.request.substr(0, 200);
     EXPECT_EQ(answersIn(answer), one.status == "100" ? 2 : 1) << one.request.substr(0, 200);
   }
 }
