@@ -14,6 +14,7 @@ import { loadInThree } from './three_glb.mjs';
 
 const kTolerance = 1e-4; // of the skeleton's size, or metres where it is smaller than one
 const kMoments = 7;
+const kRounded = 5e-5;  // of a duration
 
 // What a loader gave: the object that plays, and a clip.
 const player = (root, clip) => {
@@ -57,12 +58,14 @@ function positions(root) {
 }
 
 function largestDistance(a, b) {
-  const duration = Math.min(a.duration, b.duration);
+  // A BVH writes its frame's time with six digits, which limber takes for what they mean (0.033333 s is 30 a second): the
+  // same frames are at the same parts of the clips.
+  const shortest = Math.min(a.duration, b.duration), isRounded = Math.abs(a.duration - b.duration) < kRounded * shortest;
   let largest = 0, compared = 0, size = 1;
   for (let i = 0; i < kMoments; ++i) {
-    const seconds = duration * i / (kMoments - 1) * 0.999;
-    a.show(seconds);
-    b.show(seconds);
+    const part = i / (kMoments - 1) * 0.999;
+    a.show(part * (isRounded ? a.duration : shortest));
+    b.show(part * (isRounded ? b.duration : shortest));
     const others = positions(b.root);
     for (const [name, place] of positions(a.root)) {
       if (!others.has(name)) throw new Error(`no joint '${name}' in the converted file`);
