@@ -118,7 +118,8 @@ TEST(MovingParents, LongClipsOfManyNodesAreRefusedBeforeTheyAreSampled) {
   for (int i = 0; i < 20; ++i) {
     gltf::Node prop;
     prop.camera = 0;
-    asset.document.nodes[5].children.push_back(addElement(asset.document.nodes, std::move(prop)));
+    const Index added = addElement(asset.document.nodes, std::move(prop));
+    asset.document.nodes[5].children.push_back(added);
   }
   try {
     settleMovingParents(asset, readSkeleton(asset));
