@@ -136,7 +136,7 @@ void describe(const Motion& motion, const ConvertArguments& options, const Accou
     }
     std::string line = fmt::format("  {:<30} {:8.3f} s", clip.name, clip.duration());
     if (!options.clipEdits.edits.tolerance) {
-      const double rate = frameRateOf(motion, c);
+      const double rate = isBvh(options.output) ? bvhFrameRate(motion, c) : frameRateOf(motion, c);
       line += fmt::format(", {} at {:.6g} a second", counted(frameCount(clip, rate), "frame"), rate);
     }
     account.line(line);

@@ -59,36 +59,11 @@ struct BvhJointFrame {
   Mat3 rotation = Mat3::Identity();  // likewise
 };
 
-// The clip's rate, or the least multiple of it at which all keys are frames; where there is none, at least kDenseRate.
-double rateOfFrames(const Motion& motion, std::size_t number) {
-  constexpr int kMostFiner = 16;
-  constexpr double kOnFrame = 0.02;  // of a frame
-  const double rate = frameRateOf(motion, number), finest = std::max(rate, kDenseRate);
-  std::vector<float> times;
-  const auto addTimes = [&](const auto& tracks) {
-    for (const auto& track : tracks) times.insert(times.end(), track.times.begin(), track.times.end());
-  };
-  const Clip& clip = motion.clips[number];
-  addTimes(clip.translations);
-  addTimes(clip.rotations);
-  std::sort(times.begin(), times.end());
-  times.erase(std::unique(times.begin(), times.end()), times.end());
-  if (times.size() > 2) times.pop_back();  // a clip may end between two frames
-  for (int finer = 1; finer <= kMostFiner && finer * rate <= kMostRate; ++finer) {
-    const auto isFrame = [&](float time) {
-      const double frames = double{time} * finer * rate;
-      return std::abs(frames - std::round(frames)) <= kOnFrame + kTimeRounding * frames;
-    };
-    if (std::all_of(times.begin(), times.end(), isFrame)) return finer * rate;
-  }
-  return rate * std::ceil(finest / rate);
-}
-
 class BvhWriter {
  public:
   BvhWriter(const Motion& motion, const BvhWriteOptions& options)
       : skeleton_(motion.skeleton), clip_(motion.clips[options.clip]), unit_(options.metresPerUnit) {
-    const double rate = options.fps ? *options.fps : rateOfFrames(motion, options.clip);
+    const double rate = options.fps ? *options.fps : bvhFrameRate(motion, options.clip);
     frames_ = frameCount(clip_, rate);
     secondsPerFrame_ = 1 / rate;
     checkSize();
@@ -284,6 +259,29 @@ class BvhWriter {
 };
 
 }  // namespace
+
+double bvhFrameRate(const Motion& motion, std::size_t clip) {
+  constexpr int kMostFiner = 16;
+  constexpr double kOnFrame = 0.02;  // of a frame
+  const double rate = frameRateOf(motion, clip), finest = std::max(rate, kDenseRate);
+  std::vector<float> times;
+  const auto addTimes = [&](const auto& tracks) {
+    for (const auto& track : tracks) times.insert(times.end(), track.times.begin(), track.times.end());
+  };
+  addTimes(motion.clips[clip].translations);
+  addTimes(motion.clips[clip].rotations);
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  if (times.size() > 2) times.pop_back();  // a clip may end between two frames
+  for (int finer = 1; finer <= kMostFiner && finer * rate <= kMostRate; ++finer) {
+    const auto isFrame = [&](float time) {
+      const double frames = double{time} * finer * rate;
+      return std::abs(frames - std::round(frames)) <= kOnFrame + kTimeRounding * frames;
+    };
+    if (std::all_of(times.begin(), times.end(), isFrame)) return finer * rate;
+  }
+  return rate * std::ceil(finest / rate);
+}
 
 Bytes writeBvh(const Motion& motion, const BvhWriteOptions& options) {
   checkMotion(motion);

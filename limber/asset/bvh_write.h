@@ -8,11 +8,14 @@
 
 namespace limber {
 
+// Frames a second for a clip of the motion: its rate, or the least multiple of it, up to 240, at which all its keys but
+// the last are frames; where there is none, a multiple of at least 60.
+double bvhFrameRate(const Motion& motion, std::size_t clip);
+
 struct BvhWriteOptions {
-  std::size_t clip = 0;      // which of the motion's
-  double metresPerUnit = 1;  // lengths are divided by it; a BVH does not say its unit
-  // Frames a second; none: those of the clip, or the least multiple of them at which its keys are frames, too.
-  std::optional<double> fps;
+  std::size_t clip = 0;       // which of the motion's
+  double metresPerUnit = 1;   // lengths are divided by it; a BVH does not say its unit
+  std::optional<double> fps;  // frames a second; none: bvhFrameRate
 };
 
 // The text of a BVH file: one clip, sampled from its start to its end. Joint positions come out as they are whatever

@@ -131,10 +131,10 @@ std::string animationPlace(const gltf::Document& document, Index animation) {
 
 // Channels may share a sampler, and each gets a copy of its keys: a few kilobytes of them must not ask for gigabytes.
 void checkSharing(const Asset& asset, std::span<const Index> animations) {
-  constexpr std::uint64_t kMostShares = 16, kFreeNumbers = std::uint64_t{4} << 20;
-  std::uint64_t held = 0, read = 0;
-  for (const Asset::Buffer& buffer : asset.buffers) held += buffer.bytes.size() / sizeof(float);
-  const std::uint64_t most = std::max(kFreeNumbers, kMostShares * held);
+  constexpr std::uint64_t kMostReads = 16, kFreeNumbers = std::uint64_t{4} << 20;
+  std::uint64_t stored = 0, read = 0;
+  for (const Asset::Buffer& buffer : asset.buffers) stored += buffer.bytes.size() / sizeof(float);
+  const std::uint64_t most = std::max(kFreeNumbers, kMostReads * stored);
   for (const Index a : animations) {
     const gltf::Animation& animation = asset.document.animations[a];
     for (const gltf::AnimationChannel& channel : animation.channels) {
@@ -285,7 +285,7 @@ class ClipReader {
   NodeTracks sampled(Index node, std::vector<float> times) {
     struct Link {
       const NodeTracks* tracks = nullptr;  // null: it stands still
-      Transform stands;
+      Transform rest;
     };
     const std::vector<Index> chain = chainOf(node);
     std::vector<Link> links(chain.size());
@@ -304,7 +304,7 @@ class ClipReader {
       Affine world = Affine::Identity();
       for (std::size_t i = 0; i < chain.size(); ++i) {
         const Link& link = links[i];
-        world = world * (link.tracks ? link.tracks->at(time, link.stands).toAffine() : graph_.local[chain[i]]);
+        world = world * (link.tracks ? link.tracks->at(time, link.rest).toAffine() : graph_.local[chain[i]]);
       }
       const Transform local = decompose(world);
       Eigen::Quaternionf rotation(local.rotation.cast<float>());

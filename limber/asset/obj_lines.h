@@ -43,7 +43,7 @@ inline std::optional<double> objNumberOf(std::string_view word) {
   return parseNumber(at, word.data() + word.size());
 }
 
-// What stands behind "v": "x y z", "x y z w" or "x y z r g b [a]".
+// What follows "v": "x y z", "x y z w" or "x y z r g b [a]".
 struct ObjVertexWords {
   std::array<std::string_view, 7> words;
   std::size_t count = 0;
@@ -54,7 +54,7 @@ struct ObjVertexWords {
     }
   }
 
-  // What x, y and z are divided by; with 0 they are no place.
+  // What x, y and z are divided by; with 0 they are no position.
   double w() const { return count == 4 ? objNumberOf(words[3]).value_or(1) : 1; }
 };
 

@@ -22,7 +22,7 @@ struct SkinnedModel {
 // kUnsupported where the asset has no rig.
 SkinnedModel readSkinnedModel(const Asset& asset);
 
-// The model with one vertex for each place, that of the lowest vertex there, whose weights it has to a sum of 1, and
+// The model with one vertex for each position, that of the lowest vertex there, whose weights it has to a sum of 1, and
 // without degenerate triangles. Errors and cost of prepareMesh.
 SkinnedModel weldedModel(const SkinnedModel& model);
 

@@ -19,11 +19,11 @@ namespace {
 
 void addVertex(std::string_view line, const std::string& name, ObjVertices& result) {
   const ObjVertexWords vertex(line);
-  Vec3 place;  // what is no number is not finite either
+  Vec3 numbers;  // what is no number is not finite either
   for (Eigen::Index i = 0; i < 3; ++i) {
-    place[i] = objNumberOf(vertex.words[static_cast<std::size_t>(i)]).value_or(std::nan(""));
+    numbers[i] = objNumberOf(vertex.words[static_cast<std::size_t>(i)]).value_or(std::nan(""));
   }
-  const Vec3f position = (place / vertex.w()).cast<float>();
+  const Vec3f position = (numbers / vertex.w()).cast<float>();
   if (!position.allFinite()) {
     throw Error(ErrorCode::kBadData, fmt::format("vertex {} is not three finite numbers", result.positions.size() + 1),
                 name);

@@ -107,7 +107,7 @@ std::vector<Vec3> samplesOf(const TriMesh& mesh, std::span<const Index> vertices
 }
 
 struct AreaSample {
-  Vec3 place;
+  Vec3 position;
   double area;
 };
 
@@ -338,7 +338,7 @@ double enclosedShare(const TriMesh& mesh, const Component& component, const Wind
   double area = 0, enclosed = 0;
   for (const AreaSample& sample : areaSamplesOf(mesh, component)) {
     area += sample.area;
-    if (std::abs(winding.at(sample.place)) > 0.5) enclosed += sample.area;
+    if (std::abs(winding.at(sample.position)) > 0.5) enclosed += sample.area;
   }
   return area > 0 ? enclosed / area : 0;
 }
@@ -355,13 +355,13 @@ bool isInnerShell(const TriMesh& mesh, const Component& inner, const Component& 
   double area = 0, distance = 0;
   for (const AreaSample& sample : areaSamplesOf(mesh, inner)) {
     area += sample.area;
-    distance += sample.area * outerSurface.nearestPoint(sample.place).distance;
+    distance += sample.area * outerSurface.nearestPoint(sample.position).distance;
   }
   if (distance > kMaxShellDistance * size * area) return false;
   double outerArea = 0, covered = 0;
   for (const AreaSample& sample : areaSamplesOf(mesh, outer)) {
     outerArea += sample.area;
-    if (innerSurface.nearestPoint(sample.place).distance < kMaxBareDistance * size) covered += sample.area;
+    if (innerSurface.nearestPoint(sample.position).distance < kMaxBareDistance * size) covered += sample.area;
   }
   return covered >= kMinCovered * outerArea;
 }
