@@ -48,11 +48,10 @@ function makeModels(place) {
   for (let i = 0; i < models; ++i) writeFileSync(join(place, `model_${String(i).padStart(5, '0')}.glb`), namedCopy(samples[i % samples.length], `copy ${i}`));
 }
 
-const planOf = (name, inputs, limits = { seconds: 20, memory_mb: 2048 }) => {
+const planOf = (name, inputs, limits = { seconds: 20, memory_mb: 2048 }, options = ['--handles', '12']) => {
   const file = join(folder, name);
   writeFileSync(file, JSON.stringify({
-    limber_batch: 1, command: ['rig', '{input}', '-o', '{output}', '--handles', '12'], output: '.glb', inputs,
-    limits,
+    limber_batch: 1, command: ['rig', '{input}', '-o', '{output}', ...options], output: '.glb', inputs, limits,
   }));
   return file;
 };
@@ -135,7 +134,7 @@ check('merged records are those of one go', merged.length === models && merged.e
   const [good] = readdirSync(join(folder, 'models'));
   cpSync(join(folder, 'models', good), join(place, 'good.glb'));
   cpSync(join(folder, 'models', good), join(place, 'waits.glb'));
-  for (const pipe of ['pipe.glb', 'adapter.json']) check('a pipe is made', spawnSync('mkfifo', [join(place, pipe)]).status === 0);
+  check('a pipe is made', spawnSync('mkfifo', [join(place, 'pipe.glb')]).status === 0);
   symlinkSync('/dev/zero', join(place, 'zeros.glb'));
   for (const [name, size] of [['huge.ply', 1e12], ['large.ply', 4e8], ['large.obj', 4e8], ['large.stl', 4e8], ['large.glb', 4e8]]) {
     // A head that promises as much as follows: zeros, without a place on the disk.
@@ -143,16 +142,19 @@ check('merged records are those of one go', merged.length === models && merged.e
       + 'property float x\nproperty float y\nproperty float z\nelement face 0\nproperty list uchar int vertex_indices\nend_header\n' : '');
     truncateSync(join(place, name), size);
   }
-  const names = readdirSync(place).filter((name) => name !== 'adapter.json');
-  // One entry waits for an adapter that nobody writes.
+  const names = readdirSync(place), adapters = join(folder, 'adapters');
+  // One entry waits for a program that does not end.
+  mkdirSync(adapters);
+  writeFileSync(join(adapters, 'sleeper.json'), JSON.stringify({ limber_adapter: 1, kind: 'rig',
+    steps: [{ command: ['/bin/sh', '-c', 'sleep 1000', '{input}'] }] }));
   writeFileSync(join(folder, 'endless.jsonl'), names.map((name) => JSON.stringify({ path: `endless/${name}`,
-    options: name === 'waits.glb' ? ['--rigger', 'adapter', '--adapter', 'endless/adapter.json'] : [] })).join('\n'));
-  const plan = planOf('endless.json', ['endless.jsonl'], { seconds: 5, memory_mb: 512 });
-  const begun = Date.now(), run = limber('batch', plan, '-o', out, '--quiet'), records = recordsIn(out);
+    options: name === 'waits.glb' ? ['--rigger', 'sleeper'] : ['--handles', '12'] })).join('\n'));
+  const plan = planOf('endless.json', ['endless.jsonl'], { seconds: 5, memory_mb: 512 }, []);
+  const begun = Date.now(), run = limber('batch', plan, '-o', out, '--quiet', '--adapter-folder', adapters), records = recordsIn(out);
   check('huge and endless inputs end', run.status === 1 && records.length === names.length, run.stderr);
   check('the good one among them is done', records.filter(({ outcome }) => outcome === 'done').map(({ output }) => output).join() === 'endless/good.glb',
     JSON.stringify(records));
-  check('what waits is ended', records.find(({ input }) => input === 'endless/waits.glb')?.outcome === 'timed-out');
+  check('what waits is ended', records.find(({ input }) => input === 'endless/waits.glb')?.outcome === 'timed-out', JSON.stringify(records));
   check('each says why', records.every(({ outcome, problem }) => outcome === 'done' || problem));
   measure(`a good file among ${names.length - 1} huge and endless ones (limits of 5 s and 512 MB): seconds, done`,
     `${((Date.now() - begun) / 1000).toFixed(1)}, ${records.filter(({ outcome }) => outcome === 'done').length}`);
