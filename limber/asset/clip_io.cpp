@@ -7,6 +7,7 @@
 #include <cstring>
 #include <map>
 #include <numeric>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -87,6 +88,16 @@ Transform ownTransform(const gltf::Node& node) {
   return turnedMirror(decompose(nodeTransform(node)), halfTurnOfMirror(node.scale.value_or(Vec3::Ones())));
 }
 
+bool isNear(std::span<const float> values, const Eigen::Vector4d& own) {
+  constexpr double kRounding = 1e-6;  // of single precision
+  double squares = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double off = double{values[i]} - own[static_cast<Eigen::Index>(i)];
+    squares += off * off;
+  }
+  return std::sqrt(squares) <= kRounding * std::max(own.norm(), 1.0);  // false for NaN
+}
+
 // What the nodes above a root joint do to it, if they stand still.
 Affine frameAbove(const SceneGraph& graph, Index node) {
   return graph.parent[node] ? graph.world[*graph.parent[node]] : Affine::Identity();
@@ -129,8 +140,9 @@ std::string animationPlace(const gltf::Document& document, Index animation) {
   return name.empty() ? fmt::format("animations[{}]", animation) : fmt::format("animation '{}'", name);
 }
 
-// Channels may share a sampler, and each gets a copy of its keys: a few kilobytes of them must not ask for gigabytes.
-void checkSharing(const Asset& asset, std::span<const Index> animations) {
+}  // namespace
+
+void checkKeySharing(const Asset& asset, std::span<const Index> animations) {
   constexpr std::uint64_t kMostReads = 16, kFreeNumbers = std::uint64_t{4} << 20;
   std::uint64_t stored = 0, read = 0;
   for (const Asset::Buffer& buffer : asset.buffers) stored += buffer.bytes.size() / sizeof(float);
@@ -152,12 +164,43 @@ void checkSharing(const Asset& asset, std::span<const Index> animations) {
   }
 }
 
+bool repeatsItsNode(const Asset& asset, const gltf::Animation& animation, const gltf::AnimationChannel& channel) {
+  if (!channel.target.node) return false;
+  const std::string& path = channel.target.path;
+  const Transform transform = ownTransform(asset.document.nodes[*channel.target.node]);
+  Eigen::Vector4d own = Eigen::Vector4d::Zero();
+  if (path == kTranslation) {
+    own.head<3>() = transform.translation;
+  } else if (path == kRotation) {
+    own = transform.rotation.coeffs();
+  } else if (path == kScale) {
+    own.head<3>() = transform.scale;
+  } else {
+    return false;
+  }
+  const gltf::AnimationSampler& sampler = animation.samplers[channel.sampler];
+  const std::size_t components = path == kRotation ? 4 : 3;
+  const std::vector<float> numbers = readFloats(asset, sampler.output);
+  for (std::size_t v = 0; v < numbers.size() / components; ++v) {
+    const std::span<const float> value = std::span(numbers).subspan(v * components, components);
+    const bool isTangent = sampler.interpolation == Interpolation::kCubic && v % 3 != 1;
+    const bool isStill = isTangent ? isNear(value, Eigen::Vector4d::Zero())
+                                   : isNear(value, own) || (path == kRotation && isNear(value, -own));
+    if (!isStill) return false;
+  }
+  return true;
+}
+
+namespace {
+
 // Reads the animations of one document.
 class ClipReader {
  public:
   ClipReader(const Asset& asset, const AssetSkeleton& skeleton, Warnings& warnings)
       : asset_(asset), skeleton_(skeleton), warnings_(warnings), graph_(readSceneGraph(asset.document)) {
+    isJoint_.resize(graph_.nodeCount(), false);
     nodePose_ = readNodePose(asset, skeleton);
+    for (const Index node : skeleton.jointNode) isJoint_[node] = true;
     for (const Affine& global : restGlobals(skeleton.skeleton)) box_.add(global.translation());
   }
 
@@ -169,6 +212,7 @@ class ClipReader {
     nodes_.clear();
     for (const gltf::AnimationChannel& channel : animation.channels) {
       if (!channel.target.node) continue;
+      if (!isJoint_[*channel.target.node] && repeatsItsNode(asset_, animation, channel)) continue;
       readChannel(animation.samplers[channel.sampler], channel.target.path, *channel.target.node);
     }
     for (auto& [node, tracks] : nodes_) tracks.turnMirror(asset_.document.nodes[node]);
@@ -366,6 +410,7 @@ class ClipReader {
   const AssetSkeleton& skeleton_;
   Warnings& warnings_;
   SceneGraph graph_;
+  std::vector<bool> isJoint_;  // #nodes
   Pose nodePose_;
   Box box_;
   Index number_ = 0;                   // of the animation being read
@@ -612,7 +657,7 @@ std::vector<Clip> readClips(const Asset& asset, const AssetSkeleton& skeleton, W
 
 std::vector<Clip> readClips(const Asset& asset, const AssetSkeleton& skeleton, std::span<const Index> animations,
                             Warnings& warnings) {
-  checkSharing(asset, animations);
+  checkKeySharing(asset, animations);
   ClipReader reader(asset, skeleton, warnings);
   std::vector<Clip> clips;
   for (const Index animation : animations) {

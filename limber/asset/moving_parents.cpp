@@ -37,6 +37,7 @@ class ParentSettler {
   }
 
   void settle(std::span<const Index> animations) {
+    checkKeySharing(asset_, animations);
     std::vector<Index> moving;
     std::copy_if(animations.begin(), animations.end(), std::back_inserter(moving),
                  [&](Index a) { return findMoving(asset_.document.animations[a]); });
@@ -69,6 +70,7 @@ class ParentSettler {
     for (const gltf::AnimationChannel& channel : animation.channels) {
       const ChannelTarget target = channelTarget(channel);
       if (!target.node || !above_[*target.node] || !isTransform(target.path)) continue;
+      if (repeatsItsNode(asset_, animation, channel)) continue;
       moves_[*target.node] = any = true;
     }
     return any;

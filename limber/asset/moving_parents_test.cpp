@@ -84,6 +84,33 @@ TEST(MovingParents, ReplacedClipsMoveOnce) {
   }
 }
 
+// Exporters key every node: what repeats the node's own transform is no movement.
+TEST(MovingParents, ATrackThatRepeatsTheNodesOwnTransformMovesNothing) {
+  for (const double off : {0.0, 0.5}) {
+    Asset asset = movingArmature();
+    gltf::Animation& animation = asset.document.animations[0];
+    gltf::Node& armature = asset.document.nodes[5];
+    armature.translation = Vec3(1, 2, 3 - off);
+    animation.samplers[1].interpolation = Interpolation::kLinear;
+    animation.samplers[1].output = addFloatAccessor(asset, std::vector<float>{1, 2, 3, 1, 2, 3}, 3);
+    const Asset before = asset.clone();
+    const AssetSkeleton rig = readSkeleton(asset);
+    Warnings warnings;
+    const std::vector<Clip> clips = readClips(asset, rig, warnings);
+    const bool isSampled = clips.at(0).translations.size() + clips[0].rotations.size() > 0 &&
+                           testing::countOf(warnings, "moving-parents") > 0;
+    EXPECT_EQ(isSampled, off > 0) << "constant, but elsewhere: a movement";
+    settleMovingParents(asset, rig);
+    EXPECT_EQ(testing::countOf(asset.warnings, "moving-parents") > 0, off > 0);
+    if (off == 0) {
+      EXPECT_EQ(writeGlb(asset), writeGlb(before));
+    }
+    for (const Index node : {0u, 4u}) {
+      EXPECT_LT((placeAt(asset, node, 0.5) - placeAt(before, node, 0.5)).norm(), 1e-5) << node;
+    }
+  }
+}
+
 TEST(MovingParents, OtherAnimationsStayAsTheyAre) {
   Asset asset = movingArmature();
   const Bytes before = writeGlb(asset);
