@@ -92,28 +92,31 @@ AssetPoser::AssetPoser(const Asset& asset, const AssetSkeleton& skeleton, const 
       deformer_(deformer) {
   bound_.geometry = collectGeometry(asset_);
   bound_.normals = readNormals(asset_, bound_.geometry);
-  moveByShapes(asset_, readShapeWeights(asset_), bound_.geometry, &bound_.normals);
+  shapes_ = readShapeWeights(asset_);
+  moveByShapes(asset_, shapes_, bound_.geometry, &bound_.normals);
   if (joined_) instances_ = collectGeometry(asset).instances;
   weights_ = readWeights(asset_, bound_.geometry, skeleton);
   normalizeWeights(weights_);
   centers_ = restPositions(skeleton_);
   prepared_ = prepareDeformer(deformer, {bound_.geometry.positions, bound_.geometry.triangles, weights_},
                               skeleton_.jointCount());
+  if (joined_ && !deformer.prepare) ownBinds_.emplace(asset, skeleton, weights_);
 }
 
 PosedGeometry AssetPoser::posed(const Pose& pose, const ShapeWeights& shapes) const {
   PosedGeometry shaped = bound_;
   moveByShapes(asset_, shapes, shaped.geometry, &shaped.normals);
-  return moved(std::move(shaped), pose);
+  return moved(std::move(shaped), pose, shapes);
 }
 
-PosedGeometry AssetPoser::moved(PosedGeometry result, const Pose& pose) const {
+PosedGeometry AssetPoser::moved(PosedGeometry result, const Pose& pose, const ShapeWeights& shapes) const {
   std::vector<Vec3f>& positions = result.geometry.positions;
   const std::vector<Affine> transforms = skinTransforms(skeleton_, pose);
   std::vector<float> scratch(deformer_.scratchSize(positions.size(), skeleton_.jointCount()));
   if (joined_) result.geometry.instances = instances_;
   deformer_.deform({positions, result.normals, weights_, transforms, centers_, prepared_.get()},
                    {positions, result.normals}, scratch);
+  if (ownBinds_) ownBinds_->deform(deformer_, transforms, shapes, positions, result.normals);
   return result;
 }
 

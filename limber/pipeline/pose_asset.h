@@ -11,6 +11,7 @@
 #include "limber/asset/shape_surface.h"
 #include "limber/ik/ik_problem.h"
 #include "limber/ik/limits.h"
+#include "limber/pipeline/own_binds.h"
 #include "limber/pipeline/pose_edits.h"
 #include "limber/skeleton/pose.h"
 #include "limber/skinning/linear_blend.h"
@@ -49,7 +50,9 @@ struct PosedGeometry {
 PosedGeometry posedGeometry(const Asset& asset, const AssetSkeleton& skeleton, const Pose& pose,
                             const Deformer& deformer = kLinearBlendDeformer);
 
-// The same for many poses: the asset, which must outlive it, is read and what the deformer needs prepared once.
+// The same for many poses: the asset, which must outlive it, is read and what the deformer needs prepared once. Skins
+// that were bound in several poses are moved by their own inverse binds each, but by deformers that look at the whole
+// surface (those with a preparation): by the binds of withJoinedBinds.
 class AssetPoser {
  public:
   AssetPoser(const Asset& asset, const AssetSkeleton& skeleton, const Deformer& deformer);
@@ -57,22 +60,24 @@ class AssetPoser {
   AssetPoser& operator=(const AssetPoser&) = delete;
 
   // With blend shapes as the nodes have them, or with weights of readShapeWeights(asset, ...).
-  PosedGeometry posed(const Pose& pose) const { return moved(bound_, pose); }
+  PosedGeometry posed(const Pose& pose) const { return moved(bound_, pose, shapes_); }
   PosedGeometry posed(const Pose& pose, const ShapeWeights& shapes) const;
   const SkinWeights& weights() const { return weights_; }  // #S rows, each with a sum of 1 or 0
 
  private:
-  PosedGeometry moved(PosedGeometry surface, const Pose& pose) const;
+  PosedGeometry moved(PosedGeometry surface, const Pose& pose, const ShapeWeights& shapes) const;
 
   std::optional<Asset> joined_;  // where skins were bound in several poses
   const Asset& asset_;           // that, or the caller's
   Skeleton skeleton_;
   const Deformer& deformer_;
+  ShapeWeights shapes_;  // as the nodes have them
   PosedGeometry bound_;
   std::vector<PrimitiveInstance> instances_;  // of joined_: as the caller's asset has them
   SkinWeights weights_;
   std::vector<Vec3> centers_;  // of joints
   std::shared_ptr<const DeformPreparation> prepared_;
+  std::optional<OwnBinds> ownBinds_;
 };
 
 }  // namespace limber

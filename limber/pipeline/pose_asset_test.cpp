@@ -7,11 +7,14 @@
 #include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor.h"
+#include "limber/asset/bind_pose.h"
 #include "limber/asset/pose_io.h"
 #include "limber/asset/read.h"
+#include "limber/asset/rest_pose.h"
 #include "limber/asset/testing/document_json.h"
 #include "limber/asset/write.h"
 #include "limber/core/error.h"
+#include "warning_kinds.h"
 
 namespace limber {
 namespace {
@@ -49,7 +52,26 @@ Asset strip() {
   return asset;
 }
 
-Asset riggedStrip() {
+SkinWeights stripWeights() {
+  SkinWeights weights;
+  weights.slots = 1;
+  for (Index v = 0; v < 8; ++v) weights.joints.push_back(std::min(v / 2, Index{2}));
+  weights.weights.assign(8, 1.0f);
+  return weights;
+}
+
+// Every vertex between two joints.
+SkinWeights blendedWeights() {
+  SkinWeights weights;
+  weights.slots = 2;
+  for (Index v = 0; v < 8; ++v) {
+    weights.joints.insert(weights.joints.end(), {std::min(v / 2, Index{1}), std::min(v / 2, Index{1}) + 1});
+    weights.weights.insert(weights.weights.end(), {0.6f, 0.4f});
+  }
+  return weights;
+}
+
+Asset riggedStrip(const SkinWeights& weights = stripWeights()) {
   Asset asset = strip();
   const Geometry geometry = collectGeometry(asset);
   Skeleton skeleton;
@@ -60,10 +82,6 @@ Asset riggedStrip() {
     joint.rest.translation = skeleton.joints.empty() ? Vec3(5, 0, 0) : Vec3(0, 1, 0);
     skeleton.joints.push_back(joint);
   }
-  SkinWeights weights;
-  weights.slots = 1;
-  for (Index v = 0; v < 8; ++v) weights.joints.push_back(std::min(v / 2, Index{2}));
-  weights.weights.assign(8, 1.0f);
   attachRig(asset, geometry, skeleton, weights);
   checkAsset(asset);
   return asset;
@@ -229,6 +247,60 @@ TEST(PoseAsset, BlendShapesComeBeforeTheSkin) {
   }
 }
 
+// The strip once more, by a skin that was bound with each joint turned about itself.
+Asset stripInTwoBinds() {
+  Asset asset = riggedStrip(blendedWeights());
+  gltf::Document& document = asset.document;
+  gltf::Skin skin = document.skins.at(0);
+  std::vector<float> binds = readFloats(asset, skin.inverseBindMatrices.value());
+  for (std::size_t j = 0; j < skin.joints.size(); ++j) {
+    Eigen::Map<Eigen::Matrix4f> bind(&binds[16 * j]);
+    Eigen::Affine3f turned(Eigen::AngleAxisf(0.4f * static_cast<float>(j + 1), Vec3f(1, 2, 3).normalized()));
+    turned.translation() = Vec3f(0.1f, 0.2f, 0.3f) * static_cast<float>(j);
+    bind = turned.matrix() * bind;
+  }
+  skin.inverseBindMatrices = addFloatAccessor(asset, binds, 16);
+  const auto shown = std::find_if(document.nodes.begin(), document.nodes.end(),
+                                  [](const gltf::Node& node) { return node.mesh && node.skin; });
+  gltf::Node again = *shown;
+  again.skin = addElement(document.skins, std::move(skin));
+  const Index added = addElement(document.nodes, std::move(again));
+  document.scenes.at(0).nodes.push_back(added);
+  checkAsset(asset);
+  return asset;
+}
+
+TEST(PoseAsset, SkinsInTwoBindsAreMovedByTheirOwn) {
+  const Asset asset = stripInTwoBinds();
+  const AssetSkeleton skeleton = readSkeleton(asset);
+  ASSERT_TRUE(withJoinedBinds(asset));
+  for (const char* edit : {"knee=z:0", "knee=z:80"}) {
+    Pose pose = readNodePose(asset, skeleton);
+    editPose(skeleton.skeleton, pose, turned(edit));
+    const std::vector<Affine> joints = poseGlobals(skeleton.skeleton, pose);
+    const PosedGeometry posed = posedGeometry(asset, skeleton, pose);
+    const SkinWeights weights = readWeights(asset, posed.geometry, skeleton);
+    ASSERT_EQ(posed.geometry.instances.size(), 2u);
+    for (const PrimitiveInstance& instance : posed.geometry.instances) {
+      const SkinBinding binding = readSkinBinding(asset, asset.document.nodes[instance.node].skin.value());
+      const gltf::Attributes& attributes = asset.document.meshes[0].primitives[0].attributes;
+      const std::vector<float> stored = readFloats(asset, attributes.find("POSITION").value());
+      for (Index v = 0; v < instance.vertexCount; ++v) {
+        const Vec3 local = Vec3f(&stored[std::size_t{3} * v]).cast<double>();
+        Vec3 wanted = Vec3::Zero();
+        for (std::size_t s = 0; s < weights.slots; ++s) {
+          const Index joint = weights.jointsOf(instance.firstVertex + v)[s];
+          const auto at = std::find(binding.joints.begin(), binding.joints.end(), skeleton.jointNode[joint]);
+          const Affine& bind = binding.inverseBinds[static_cast<std::size_t>(at - binding.joints.begin())];
+          wanted += weights.weightsOf(instance.firstVertex + v)[s] * (joints[joint] * bind * local);
+        }
+        const Vec3f got = posed.geometry.positions[instance.firstVertex + v];
+        EXPECT_LT((got.cast<double>() - wanted).norm(), 1e-5) << edit << " " << instance.node << " " << v;
+      }
+    }
+  }
+}
+
 TEST(PoseIo, AFrozenMeshStandsInThePoseWithoutARig) {
   Asset asset = riggedStrip();
   const AssetSkeleton skeleton = readSkeleton(asset);
@@ -243,6 +315,16 @@ TEST(PoseIo, AFrozenMeshStandsInThePoseWithoutARig) {
   EXPECT_EQ(frozen.positions, posed.geometry.positions);
   EXPECT_EQ(readNormals(asset, frozen), posed.normals);
   EXPECT_EQ(frozen.triangles, posed.geometry.triangles);
+}
+
+TEST(PoseIo, FrozenJointsBeyondEightOfAVertexAreReported) {
+  Asset asset = riggedStrip();
+  gltf::Attributes& attributes = asset.document.meshes.at(0).primitives.at(0).attributes;
+  attributes.set("JOINTS_2", attributes.find("JOINTS_0").value());
+  attributes.set("WEIGHTS_2", attributes.find("WEIGHTS_0").value());
+  const Geometry geometry = collectGeometry(asset);
+  freezeGeometry(asset, geometry, geometry.positions, readNormals(asset, geometry));
+  EXPECT_EQ(testing::countOf(asset.warnings, "many-influences"), 1u);
 }
 
 TEST(PoseIo, AMirroredPartKeepsItsOutside) {
