@@ -141,7 +141,10 @@ TEST(CheckAsset, TransformsAreFiniteAndWellFormed) {
   EXPECT_EQ(faultWith("/nodes/0/translation", {0, 1}), "nodes[0].translation");
   EXPECT_EQ(faultWith("/nodes/0/translation/1", "x"), "nodes[0].translation[1]");
   EXPECT_EQ(faultWith("/nodes/0/translation/1", 1e300), "nodes[0].translation[1]");
-  EXPECT_EQ(faultWith("/nodes/1/rotation", {0, 0, 0, 0}), "nodes[1].rotation");
+  EXPECT_EQ(faultWith("/nodes/1/rotation", {0, 0, 0, 0}), "");  // it is repaired
+  Asset asset = readAsset(everythingModel().glb(), "m");
+  asset.document.nodes[1].rotation = Vec4::Zero();
+  EXPECT_THROW(checkAsset(asset), Error);
   EXPECT_EQ(faultWith("/nodes/1/scale", {0, 0, 0}), "");  // flat, but a transform
   EXPECT_EQ(faultWith("/nodes/1/matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}), "nodes[1]");
   EXPECT_EQ(faultWith("/nodes/3/matrix", {1, 2, 3}), "nodes[3].matrix");

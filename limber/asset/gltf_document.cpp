@@ -38,13 +38,13 @@ class FilesBeside {
   Bytes read(std::string_view uri, const std::string& place) {
     const std::string path = localPath(uri);
     std::size_t& size = sizes_[std::filesystem::path(path).lexically_normal().generic_string()];
-    repeated_ += size;
-    if (repeated_ > kMaxRepeated) {
+    if (size > 0 && repeated_ + size > kMaxRepeated) {
       throw Error(ErrorCode::kLimit,
                   fmt::format("its file \"{}\" was named before, and files named again come to more than {} MB",
                               shortened(path), kMaxRepeated >> 20),
                   place, "name each file once");
     }
+    repeated_ += size;
     std::optional<Bytes> bytes;
     if (resolver_) bytes = resolver_(path);
     if (!bytes) {

@@ -30,6 +30,7 @@ bool ImportIo::Exists(const char* path) const {
 Assimp::IOStream* ImportIo::Open(const char* path, const char*) {
   if (path == mainName_) return new Assimp::MemoryIOStream(mainFile_.data(), mainFile_.size());
   const Bytes* bytes = cached(path);
+  if (!bytes && !missingFile_) missingFile_ = path;
   if (bytes && lowerExtension(path) == ".mtl") {
     movedTextures_ += countMovedMtlTextures(*bytes);
     const std::string place(path);

@@ -27,6 +27,9 @@ class ImportIo : public Assimp::IOSystem {
   // file first, then beside the model; else by its last part beside the model.
   std::optional<Bytes> sideFile(std::string_view path) const;
 
+  // The first file that was asked for beside the main one and is not there.
+  const std::optional<std::string>& missingFile() const { return missingFile_; }
+
   // Textures of the materials' files that were opened which do not lie as they are.
   std::size_t movedTextures() const { return movedTextures_; }
 
@@ -38,6 +41,7 @@ class ImportIo : public Assimp::IOSystem {
   const Resolver& resolver_;
   std::vector<std::string> materialFolders_;  // of the MTL files that were opened; each once; they end with a slash
   std::size_t movedTextures_ = 0;
+  std::optional<std::string> missingFile_;
   mutable std::map<std::string, std::optional<Bytes>> sideFiles_;
 };
 

@@ -13,7 +13,9 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
+#include <assimp/DefaultLogger.hpp>
 #include <assimp/Importer.hpp>
+#include <assimp/LogStream.hpp>
 #include <nlohmann/json.hpp>
 
 #include "limber/asset/glb.h"
@@ -228,12 +230,41 @@ Prepared prepare(ByteSpan bytes, std::string_view extension) {
   return result;
 }
 
-void warnOfPrepared(Asset& asset, const Prepared& file, std::size_t movedTextures) {
+// Counts what Assimp reports of indices that are out of range while this lives: for them its reader of OFF takes the
+// last vertex.
+class IndexErrorCount {
+ public:
+  IndexErrorCount() {
+    Assimp::DefaultLogger::create(nullptr, Assimp::Logger::NORMAL, 0);
+    Assimp::DefaultLogger::get()->attachStream(new Stream(count_), Assimp::Logger::Err);  // owns it from here
+  }
+  ~IndexErrorCount() { Assimp::DefaultLogger::kill(); }
+  IndexErrorCount(const IndexErrorCount&) = delete;
+  IndexErrorCount& operator=(const IndexErrorCount&) = delete;
+
+  std::size_t count() const { return count_; }
+
+ private:
+  class Stream : public Assimp::LogStream {
+   public:
+    explicit Stream(std::size_t& count) : count_(count) {}
+    void write(const char* message) override {
+      if (std::string_view(message).find("index is out of range") != std::string_view::npos) ++count_;
+    }
+
+   private:
+    std::size_t& count_;
+  };
+
+  std::size_t count_ = 0;
+};
+
+void warnOfPrepared(Asset& asset, const Prepared& file, const ImportIo& io) {
   asset.warnings.add("loose-vertices", "vertices that no face uses are left out", {}, file.obj.looseVertices);
   asset.warnings.add("invalid-faces", "faces that name vertices that are not there are left out", {},
                      file.obj.invalidFaces);
   asset.warnings.add("texture-transforms", "textures that are moved, turned or scaled lie as if they were not", {},
-                     movedTextures);
+                     io.movedTextures());
   asset.warnings.add("key-interpolation",
                      "tracks with steps or curves between their keys (STEP, BEZIER, ...) go straight from key to key",
                      {}, file.dae.curvedSamplers);
@@ -245,6 +276,7 @@ Asset readWithAssimp(ByteSpan bytes, std::string_view name, const Format& format
   const Prepared file = prepare(bytes, format.extension);
   const std::string mainName = std::string("model.") + format.extension;
   auto* io = new ImportIo(file.bytes(), mainName, resolver);
+  const IndexErrorCount indexErrors;
   Assimp::Importer importer;
   importer.SetIOHandler(io);                                            // owns it from here
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);  // no made-up mesh where there is only motion
@@ -262,7 +294,13 @@ Asset readWithAssimp(ByteSpan bytes, std::string_view name, const Format& format
   if (format.extension == std::string_view("dae")) convention = daeConvention(edited);
   Asset asset = convertScene(*scene, *io, convention.scale, convention.axes);
   warnOfConversion(asset, convention);
-  warnOfPrepared(asset, file, io->movedTextures());
+  warnOfPrepared(asset, file, *io);
+  asset.warnings.add("invalid-corners", "corners of faces that name vertices that are not there get the last one", {},
+                     indexErrors.count());
+  if (format.extension == std::string_view("obj") && io->missingFile()) {
+    asset.warnings.add("missing-materials", "the file of the materials is not there or outside the model's folder",
+                       validUtf8(*io->missingFile()));
+  }
   return asset;
 }
 

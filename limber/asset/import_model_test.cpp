@@ -259,6 +259,21 @@ TEST(ImportObj, PicturesLieBesideTheMaterials) {
   EXPECT_EQ(warningKinds(asset.warnings), std::vector<std::string>{"texture-transforms"});
 }
 
+TEST(ImportObj, AFileOfMaterialsThatIsNotThereIsNamed) {
+  for (const char* name : {"looks.mtl", "../outside.mtl", "model.mtl"}) {
+    const std::string text = std::string("mtllib ") + name + "\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n";
+    const Asset asset = import(text, "t.obj", folder({}));
+    ASSERT_EQ(warningKinds(asset.warnings), std::vector<std::string>{"missing-materials"}) << name;
+    EXPECT_THAT(asset.warnings.items()[0].where, HasSubstr(std::string(name).substr(0, 5)));
+  }
+}
+
+TEST(ImportOff, CornersThatNameWhatIsNotThereAreReported) {
+  const Asset asset = import("OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n3 0 1 9\n", "t.off");
+  EXPECT_EQ(testing::countOf(asset.warnings, "invalid-corners"), 1u);
+  EXPECT_EQ(collectGeometry(asset).triangles.size(), 2u);
+}
+
 TEST(ImportObj, APictureWhereTheObjHasItComesBeforeOneOfThatNameAlone) {
   const std::string magic("\x89PNG\r\n\x1a\n", 8);
   const Asset asset = import("mtllib looks/t.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n", "t.obj",
@@ -432,6 +447,16 @@ TEST(ImportStl, BytesBehindTheTrianglesAreLeftOut) {
   EXPECT_DOUBLE_EQ(areaOf(collectGeometry(asset)), 2);
   EXPECT_EQ(warningKinds(asset.warnings), std::vector<std::string>{"trailing-bytes"});
   EXPECT_EQ(asset.warnings.items()[0].count, 2u);
+}
+
+TEST(ImportStl, NamesMayBeInLatin1) {
+  for (const char* name : {"M\xfcller", "M\xc3\xbcller"}) {
+    const std::string text =
+        std::string("solid ").append(name).append("\n") + facet("0 0 0", "1 0 0", "0 1 0") + "endsolid " + name + "\n";
+    const Asset asset = import(text, "t.stl");
+    ASSERT_EQ(asset.document.meshes.size(), 1u);
+    EXPECT_EQ(asset.document.meshes[0].name, "M\xc3\xbcller");
+  }
 }
 
 TEST(ImportOff, ColorsMayBeBytes) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,16 @@
 #include "limber/core/file.h"
 
 namespace limber {
+
+// A vertex' number as two of a colour's digits, which both are exact in single precision.
+inline constexpr std::size_t kObjNumberBase = 65536;
+
+// The number that such a colour says, of `count` vertices; none where it says none of theirs.
+inline std::optional<std::size_t> objNumber(float red, float green, std::size_t count) {
+  const double number = double{red} + double{kObjNumberBase} * green;
+  if (!(number >= 0 && number < static_cast<double>(count))) return std::nullopt;  // NaN neither
+  return static_cast<std::size_t>(number);
+}
 
 // What becomes of the numbers that an OBJ file gives its vertices.
 enum class ObjNumbers { kDropped, kKept };

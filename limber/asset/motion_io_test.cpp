@@ -14,6 +14,7 @@
 #include "limber/asset/write.h"
 #include "shared_data.h"
 #include "temporary_folder.h"
+#include "warning_kinds.h"
 
 namespace limber {
 namespace {
@@ -98,6 +99,24 @@ TEST(MotionIo, BlendShapesAloneMoveNoJoint) {
   ASSERT_EQ(motion.clips.size(), 1u);
   EXPECT_TRUE(motion.clips[0].rotations.empty());
   EXPECT_THROW(motionOf(asset), Error);
+}
+
+TEST(MotionIo, AMotionAloneLosesItsBlendShapes) {
+  limber::testing::GltfBuilder model = limber::testing::everythingModel();
+  EXPECT_EQ(limber::testing::countOf(readMotion(model.glb(), "turn.glb").warnings, "motion-shapes"), 0u);
+  const Index times = model.accessor<float>({0, 1}, 5126, "SCALAR", 2);
+  const Index weights = model.accessor<float>({0, 1}, 5126, "SCALAR", 2);
+  model.json["animations"][0]["samplers"].push_back({{"input", times}, {"output", weights}});
+  model.json["animations"][0]["channels"].push_back({{"sampler", 1}, {"target", {{"node", 2}, {"path", "weights"}}}});
+  const Motion motion = readMotion(model.glb(), "turn.glb");
+  EXPECT_EQ(limber::testing::countOf(motion.warnings, "motion-shapes"), 1u);
+  for (const Warning& warning : motion.warnings.items()) {
+    if (warning.kind == "motion-shapes") {
+      EXPECT_EQ(warning.where, "turn");
+    }
+  }
+  ASSERT_EQ(motion.clips.size(), 1u);
+  EXPECT_EQ(motion.clips[0].rotations.size(), 1u) << "the joint moves all the same";
 }
 
 TEST(MotionIo, ABvhIsAModelToo) {

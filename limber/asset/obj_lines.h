@@ -14,16 +14,6 @@
 
 namespace limber {
 
-// A vertex' number as two of a colour's digits, which both are exact in single precision.
-inline constexpr std::size_t kObjNumberBase = 65536;
-
-// The number that such a colour says, of `count` vertices; none where it says none of theirs.
-inline std::optional<std::size_t> objNumber(float red, float green, std::size_t count) {
-  const double number = double{red} + double{kObjNumberBase} * green;
-  if (!(number >= 0 && number < static_cast<double>(count))) return std::nullopt;  // NaN neither
-  return static_cast<std::size_t>(number);
-}
-
 // Takes the next word off the front of a line; empty at its end or at a comment.
 inline std::string_view nextObjWord(std::string_view& line) {
   line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));

@@ -118,12 +118,23 @@ Asset motionFileAsset(const Motion& motion, std::string_view name, const char* f
   return asset;
 }
 
+// A rotation of length 0 is none, but everything else of such a file can be read.
+void repairRotations(Asset& asset) {
+  constexpr double kMinSquaredLength = 1e-12;  // of a quaternion, as checkAsset has it
+  for (gltf::Node& node : asset.document.nodes) {
+    if (!node.rotation || !(node.rotation->squaredNorm() < kMinSquaredLength)) continue;
+    node.rotation.reset();
+    asset.warnings.add("invalid-rotations", "nodes with a rotation of length 0 are not rotated", node.name);
+  }
+}
+
 // What `read` gives, checked; throws with the file's name.
 template <typename Read>
 Asset finished(std::string_view name, const Read& read) {
   try {
     Asset asset = read();
     asset.name = name;
+    repairRotations(asset);
     checkAsset(asset);
     repairWeights(asset);
     startAtZero(asset);

@@ -157,6 +157,27 @@ TEST(ReadAsset, AFileThatManyBuffersNameIsRefused) {
   EXPECT_NO_THROW(readAsset(asBytes(json.dump()), "m.gltf", resolver));
 }
 
+TEST(ReadAsset, PicturesOfAFileThatIsNamedTooOftenStayReferences) {
+  const std::vector<std::string> uris = {"a.png", "./a.png", "%61.png", "a.png", "a%2Epng", "%61%2Epng"};
+  Json json = {{"asset", {{"version", "2.0"}}}};
+  for (const std::string& uri : uris) json["images"].push_back({{"uri", uri}});
+  int reads = 0;
+  const Resolver resolver = [&](std::string_view) {
+    ++reads;
+    Bytes picture = pngBytes();
+    picture.resize(std::size_t{24} << 20);
+    return picture;
+  };
+  const Asset asset = readAsset(asBytes(json.dump()), "m.gltf", resolver);
+  EXPECT_EQ(reads, 3);
+  ASSERT_EQ(asset.sideFiles.size(), 3u) << "48 MB more than once; another would make it 72";
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(asset.sideFiles[i].uri, uris[i]);
+  for (std::size_t i = 0; i < uris.size(); ++i) EXPECT_EQ(asset.document.images[i].uri, uris[i]);
+  ASSERT_THAT(warningKinds(asset.warnings), ElementsAre("missing-images"));
+  EXPECT_EQ(asset.warnings.items()[0].count, 2u);
+  EXPECT_THAT(asset.warnings.items()[0].message, HasSubstr("files named again come to more than 64 MB"));
+}
+
 TEST(ReadAsset, AnImageThatCannotBeReadIsLookedForOnce) {
   const Json image = {{"uri", "notes.txt"}};
   const Json json = {{"asset", {{"version", "2.0"}}}, {"images", std::vector<Json>(50, image)}};
@@ -281,6 +302,15 @@ TEST(ReadAsset, TextInUtf16IsToldApart) {
       }
     }
   }
+}
+
+TEST(ReadAsset, ARotationOfLengthZeroIsNone) {
+  GltfBuilder model = everythingModel();
+  model.json["nodes"][1]["rotation"] = {0, 0, 0, 0};
+  const Asset asset = readAsset(model.glb(), "m.glb");
+  EXPECT_FALSE(asset.document.nodes[1].rotation);
+  ASSERT_EQ(asset.warnings.items().size(), 1u);
+  EXPECT_EQ(asset.warnings.items()[0].kind, "invalid-rotations");
 }
 
 TEST(ReadAsset, UnknownRequiredExtensionsAreKept) {

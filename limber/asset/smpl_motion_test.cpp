@@ -1,5 +1,6 @@
 #include "limber/asset/smpl_motion.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <string>
@@ -8,6 +9,7 @@
 
 #include "limber/asset/motion_io.h"
 #include "limber/asset/smpl_skeleton.h"
+#include "limber/asset/stored_archive.h"
 #include "limber/asset/testing/npy_bytes.h"
 #include "limber/asset/testing/stored_zip.h"
 #include "limber/core/numbers.h"
@@ -381,6 +383,28 @@ TEST(SmplMotion, IsReadOutOfItsArchive) {
   EXPECT_EQ(asset.format, "npz");
   EXPECT_EQ(motionOf(asset).clips.at(0).name, "sway");
   EXPECT_THROW(readAsset(asBytes(std::string("numbers")), "sway.npz"), Error);
+}
+
+TEST(SmplMotion, ArraysThatNobodyAsksForAreNotUnpacked) {
+  std::vector<std::pair<std::string, std::string>> stored;
+  for (const auto& [path, bytes] : swaying(22)) stored.emplace_back(path, std::string(bytes.begin(), bytes.end()));
+  const std::string extra = "nobody asks for this";
+  stored.emplace_back("extra.npy", extra);
+  Bytes archive = testing::storedZip(stored);
+  const auto place = std::search(archive.begin(), archive.end(), extra.begin(), extra.end());
+  ASSERT_NE(place, archive.end());
+  *place ^= 1;  // its checksum tells
+  EXPECT_THROW(readZipArchive(archive, "sway.npz"), Error);
+  const Motion motion = readSmplMotion(archive, "sway.npz"), wanted = readSmplMotion(swaying(22), "sway.npz");
+  EXPECT_EQ(placesAt(motion, 0.03), placesAt(wanted, 0.03));
+  EXPECT_EQ(readMotion(archive, "sway").skeleton.joints.size(), 22u);
+  EXPECT_EQ(motionOf(readAsset(archive, "sway.npz")).clips.size(), 1u);
+
+  const Bytes poses = swaying(22).at("poses.npy");
+  const auto asked = std::search(archive.begin(), archive.end(), poses.begin(), poses.end());
+  ASSERT_NE(asked, archive.end());
+  asked[static_cast<std::ptrdiff_t>(poses.size()) - 1] ^= 1;
+  EXPECT_THROW(readSmplMotion(archive, "sway.npz"), Error) << "of what is asked for";
 }
 
 }  // namespace

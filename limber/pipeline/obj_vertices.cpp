@@ -10,7 +10,7 @@
 #include "limber/asset/accessor.h"
 #include "limber/asset/accessor_sweep.h"
 #include "limber/asset/geometry.h"
-#include "limber/asset/obj_lines.h"
+#include "limber/asset/import_obj.h"
 #include "limber/core/error.h"
 
 namespace limber {

@@ -110,6 +110,8 @@ const warnings: Named = {
   'negative-times': 'clips with keys before 0 s begin there now', 'missing-targets': 'movements of nodes that are not there are left out',
   'degenerate-triangles': 'triangles without area are left out of the computation', 'no-bone-in-sight': 'no bone is in sight of any point of the surface',
   'morph-targets': 'morph targets are left out', 'lights': 'lights are left out', 'cameras': 'cameras are left out',
+  'invalid-rotations': 'nodes with a rotation of length 0 are not rotated', 'many-influences': 'of more than eight joints of a vertex only the strongest move it',
+  'missing-materials': 'the file of the materials cannot be found', 'invalid-corners': 'corners that name vertices that are not there get the last one',
   'missing-images': 'pictures that cannot be found are left out', 'unsupported-images': 'pictures that are neither PNG nor JPEG are left out',
   'converted-units': 'the unit is converted to metres', 'converted-axes': 'the model is turned to Y up', 'invalid-keys': 'keys that make no sense are left out',
   'invalid-normals': 'normals without a direction are made anew', 'decompressed': 'what was compressed is saved uncompressed',
