@@ -7,6 +7,7 @@
 
 #include "limber/asset/clip_moment.h"
 #include "limber/asset/geometry.h"
+#include "limber/asset/mesh_asset.h"
 #include "limber/asset/motion_io.h"
 #include "limber/asset/read.h"
 #include "limber/asset/rig_io.h"
@@ -20,6 +21,7 @@
 #include "model_checks.h"
 #include "shared_data.h"
 #include "shared_people.h"
+#include "warning_kinds.h"
 
 namespace limber::testing {
 
@@ -445,6 +447,89 @@ TEST(TemplateSamples, ABipedIsAPerson) {
   EXPECT_GT(place("head").y(), place("hips").y());
   writeFile(testOutputFolder() / "template_biped.glb", result.glb);
 }
+
+// What exporters and scenes do to a body that stands on y = 0.
+struct Flaw {
+  const char *name, *warning;
+  std::size_t (*spoil)(TriMesh& mesh);  // how many triangles the warning is to count
+
+  friend void PrintTo(const Flaw& flaw, std::ostream* out) { *out << flaw.name; }
+};
+
+Triangle turnedRound(const Triangle& t) {
+  return {t[0], t[2], t[1]};
+}
+
+std::size_t reverseOneSide(TriMesh& mesh) {
+  std::size_t count = 0;
+  for (Triangle& t : mesh.triangles) {
+    if (mesh.positions[t[0]].x() + mesh.positions[t[1]].x() + mesh.positions[t[2]].x() <= 0) continue;
+    t = turnedRound(t);
+    ++count;
+  }
+  return count;
+}
+
+std::size_t reverseEveryThird(TriMesh& mesh) {
+  std::size_t count = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
+    mesh.triangles[t] = turnedRound(mesh.triangles[t]);
+    ++count;
+  }
+  return count;
+}
+
+std::size_t showBothSides(TriMesh& mesh) {
+  const std::vector<Triangle> front = mesh.triangles;
+  for (const Triangle& t : front) mesh.triangles.push_back(turnedRound(t));
+  return front.size();
+}
+
+std::size_t putOnAFloor(TriMesh& mesh) {
+  Box box;
+  for (const Vec3f& p : mesh.positions) box.add(p.cast<double>());
+  const auto half = static_cast<float>(5 * box.size().maxCoeff()), low = static_cast<float>(box.min.y());
+  const Index first = mesh.vertexCount();
+  for (const Vec3f& corner :
+       {Vec3f(-half, low, -half), Vec3f(half, low, -half), Vec3f(half, low, half), Vec3f(-half, low, half)}) {
+    mesh.positions.push_back(corner);
+  }
+  mesh.triangles.push_back({first, first + 2, first + 1});
+  mesh.triangles.push_back({first, first + 3, first + 2});
+  return 2;
+}
+
+class TemplateFlaws : public ::testing::TestWithParam<Flaw> {};
+
+TEST_P(TemplateFlaws, LeaveTheJointsWhereTheyWere) {
+  const Geometry geometry = collectGeometry(makeSample("biped"));
+  TriMesh mesh{geometry.positions, geometry.triangles};
+  const Rigged clean = rigged(meshAsset(mesh), templateOptions("humanoid"));
+  const double height = bulkBox(mesh.positions).size().y();
+  const std::size_t count = GetParam().spoil(mesh);
+  const Rigged spoiled = rigged(meshAsset(mesh), templateOptions("humanoid"));
+  for (const char* kind : {"reversed-faces", "repeated-faces", "surroundings"}) {
+    EXPECT_EQ(countOf(clean.report.warnings, kind), 0u) << kind;
+    EXPECT_EQ(countOf(spoiled.report.warnings, kind), kind == std::string(GetParam().warning) ? count : 0) << kind;
+  }
+  const Skeleton expected = readSkeleton(readAsset(clean.glb, "clean.glb")).skeleton;
+  const Skeleton skeleton = readSkeleton(readAsset(spoiled.glb, "spoiled.glb")).skeleton;
+  const std::vector<Affine> places = restGlobals(expected), globals = restGlobals(skeleton);
+  EXPECT_EQ(skeleton.jointCount(), expected.jointCount());
+  for (Index j = 0; j < expected.jointCount(); ++j) {
+    const std::optional<Index> joint = skeleton.find(expected.joints[j].name);
+    ASSERT_TRUE(joint) << expected.joints[j].name;
+    EXPECT_LT((globals[*joint].translation() - places[j].translation()).norm(), 0.02 * height)
+        << expected.joints[j].name;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Biped, TemplateFlaws,
+                         ::testing::Values(Flaw{"OneSideReversed", "reversed-faces", &reverseOneSide},
+                                           Flaw{"EveryThirdReversed", "reversed-faces", &reverseEveryThird},
+                                           Flaw{"BothSidesShown", "repeated-faces", &showBothSides},
+                                           Flaw{"OnAFloor", "surroundings", &putOnAFloor}),
+                         [](const ::testing::TestParamInfo<Flaw>& flaw) { return flaw.param.name; });
 
 TEST(TemplateSamples, AStoolIsNoPerson) {
   const Rigged result = rigged(makeSample("stool"), templateOptions("humanoid"));

@@ -248,6 +248,38 @@ TEST_F(Cli, ConvertTakesBlendShapesAlone) {
   EXPECT_EQ(files(), before);
 }
 
+// A bone and its tip; a clip brings the bone's scale, or what `path` names, from 1 to 2 in a second.
+std::string growingBone(const std::string& path) {
+  return R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+  "nodes": [{"name": "bone", "children": [1]}, {"name": "tip", "translation": [0, 1, 0]}],
+  "buffers": [{"byteLength": 32,
+    "uri": "data:application/octet-stream;base64,AAAAAAAAgD8AAIA/AACAPwAAgD8AAABAAAAAQAAAAEA="}],
+  "bufferViews": [{"buffer": 0, "byteLength": 8}, {"buffer": 0, "byteOffset": 8, "byteLength": 24}],
+  "accessors": [
+    {"bufferView": 0, "componentType": 5126, "type": "SCALAR", "count": 2, "min": [0], "max": [1]},
+    {"bufferView": 1, "componentType": 5126, "type": "VEC3", "count": 2}],
+  "animations": [{"name": "grow", "samplers": [{"input": 0, "output": 1}],
+    "channels": [{"sampler": 0, "target": {"node": 0, "path": ")" +
+         path + R"("}}]}]})";
+}
+
+TEST_F(Cli, ConvertTellsOfScalesThatABvhDoesNotHold) {
+  put("grow.gltf", growingBone("scale"));
+  const Result grown = run({"convert", "grow.gltf", "grow.bvh"});
+  EXPECT_EQ(grown.code, 0) << grown.error;
+  EXPECT_THAT(grown.error, AllOf(HasSubstr("warning: scales of joints change, which a BVH does not hold"),
+                                 HasSubstr("[bvh-scales], at bone\n")));
+  EXPECT_THAT(content("grow.bvh"), HasSubstr("ROOT bone"));
+  put("rise.gltf", growingBone("translation"));
+  for (const std::string input : {"grow.gltf", "rise.gltf"}) {
+    const std::string output = input == "grow.gltf" ? "grow.glb" : "rise.bvh";
+    const Result kept = run({"convert", input, output});
+    EXPECT_EQ(kept.code, 0) << kept.error;
+    EXPECT_THAT(kept.error, Not(HasSubstr("bvh-scales"))) << output;
+  }
+  keep("grow.glb");
+}
+
 TEST_F(Cli, ConvertRefusesWithOneLine) {
   put("walk.bvh", kWalk);
   put("bad.bvh", kWalk + "1 2 3\n4 5 6\n");
@@ -512,6 +544,53 @@ TEST_F(Cli, PosesStartFromAMomentOfAClip) {
   const Result refused = run({"pose", "waving.glb", "--clip", "bow", "-o", "none.glb"});
   expectOneLine(refused, 1);
   EXPECT_THAT(refused.error, AllOf(HasSubstr("bow"), HasSubstr("wave")));
+}
+
+// The triangle of kBlendShape in a skin of one joint, its shape half on.
+std::string skinnedBlendShape() {
+  nlohmann::json model = nlohmann::json::parse(kBlendShape);
+  model["scenes"][0]["nodes"] = {0, 1};
+  model["nodes"][0]["skin"] = 0;
+  model["nodes"][0]["weights"] = {0.5};
+  model["nodes"].push_back({{"name", "neck"}});
+  model["skins"] = nlohmann::json::array({{{"joints", {1}}}});
+  const std::string bytes = "AAAAAAAAAAAAAAAA/wAAAP8AAAD/AAAA";  // three times joint 0, three times all of the weight
+  model["buffers"].push_back({{"byteLength", 24}, {"uri", "data:application/octet-stream;base64," + bytes}});
+  for (const int offset : {0, 12}) {
+    const std::size_t view = model["bufferViews"].size();
+    model["bufferViews"].push_back({{"buffer", 1}, {"byteOffset", offset}, {"byteLength", 12}});
+    nlohmann::json accessor = {{"bufferView", view}, {"componentType", 5121}, {"type", "VEC4"}, {"count", 3}};
+    if (offset != 0) accessor["normalized"] = true;
+    model["meshes"][0]["primitives"][0]["attributes"][offset == 0 ? "JOINTS_0" : "WEIGHTS_0"] =
+        model["accessors"].size();
+    model["accessors"].push_back(accessor);
+  }
+  return model.dump();
+}
+
+// The greatest of an OBJ's vertices.
+double greatestZ(const std::string& obj) {
+  std::istringstream lines(obj);
+  double greatest = -1e9, x = 0, y = 0, z = 0;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("v ") && std::istringstream(line.substr(2)) >> x >> y >> z) greatest = std::max(greatest, z);
+  }
+  return greatest;
+}
+
+TEST_F(Cli, PosesHaveTheBlendShapesOfTheirMoment) {
+  put("face.gltf", skinnedBlendShape());
+  const auto baked = [&](const std::vector<std::string>& moment) {
+    std::vector<std::string> words = {"pose", "face.gltf", "--bake", "-o", "still.obj", "-q"};
+    words.insert(words.end(), moment.begin(), moment.end());
+    const Result done = run(words);
+    EXPECT_EQ(done.code, 0) << done.error;
+    return greatestZ(content("still.obj"));
+  };
+  EXPECT_NEAR(baked({}), 0.5, 1e-6) << "as the node has it";
+  EXPECT_NEAR(baked({"--clip", "smile", "--time", "0"}), 0, 1e-6);
+  EXPECT_NEAR(baked({"--clip", "smile", "--time", "0.25"}), 0.25, 1e-6);
+  EXPECT_NEAR(baked({"--clip", "smile", "--time", "1"}), 1, 1e-6);
 }
 
 TEST_F(Cli, SampleMotionsMoveTheSamplePerson) {

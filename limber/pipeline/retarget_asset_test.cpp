@@ -5,6 +5,7 @@
 
 #include "limber/asset/motion_io.h"
 #include "limber/matching/testing/test_motion.h"
+#include "warning_kinds.h"
 
 namespace limber {
 namespace {
@@ -89,6 +90,36 @@ TEST(RetargetAsset, DoubtfulMatchesAreAWarning) {
       if (warning.kind == "doubtful-matches") warned += warning.count;
     }
     EXPECT_EQ(warned, clips[0].doubtful.size());
+  }
+}
+
+// A track that holds the scale of the rest pose moves nothing.
+TEST(RetargetAsset, ScalesThatMoveAreAWarning) {
+  const Skeleton person = practiceHumanoid();
+  for (const bool moves : {true, false}) {
+    Motion motion;
+    motion.name = "breathe";
+    motion.skeleton = person;
+    motion.clips.push_back(clipOf(person, limber::testing::walk(person, 30), "walk"));
+    motion.clips[0].scales.clear();
+    for (const char* joint : {"chest", "head"}) {
+      Track<Vec3f> track;
+      track.joint = person.find(joint).value();
+      track.times = {0, 0.2f};
+      track.values = {Vec3f::Ones(), moves ? Vec3f(1.2f, 1, 1) : Vec3f(1, 1, 1)};
+      motion.clips[0].scales.push_back(track);
+    }
+    Motion hero;
+    hero.skeleton = limber::testing::oddlyBuilt();
+    Asset character = motionAsset(hero);
+    const std::vector<RetargetedClip> clips = retargetOnto(character, motion, {});
+    ASSERT_EQ(clips.size(), 1u);
+    EXPECT_EQ(limber::testing::countOf(character.warnings, "motion-scales"), moves ? 2u : 0u) << "joints";
+    std::vector<std::string> places;
+    for (const Warning& warning : character.warnings.items()) {
+      if (warning.kind == "motion-scales") places.push_back(warning.where);
+    }
+    EXPECT_EQ(places, moves ? std::vector<std::string>{"breathe: chest"} : std::vector<std::string>());
   }
 }
 
