@@ -208,6 +208,49 @@ TEST(EditClips, OthersStay) {
   EXPECT_THROW(editClips(asset, std::vector<std::string>{"run"}, edits), Error);
 }
 
+// How far the joint goes from the clip's beginning to its end.
+Vec3 travelOf(const Motion& motion, const std::string& joint) {
+  const Index number = motion.skeleton.find(joint).value();
+  const auto at = [&](double seconds) {
+    Pose pose = restPose(motion.skeleton);
+    sampleClip(motion.clips.at(0), seconds, pose);
+    return Vec3(poseGlobals(motion.skeleton, pose)[number].translation());
+  };
+  return at(motion.clips[0].duration()) - at(0);
+}
+
+TEST(EditClips, TheMovementOfAnArmatureIsThereOnce) {
+  Asset moving = motionAsset(walking());
+  gltf::Document& document = moving.document;
+  gltf::Node armature;
+  armature.name = "armature";
+  armature.children = document.scenes.at(0).nodes;
+  const Index node = addElement(document.nodes, std::move(armature));
+  document.scenes[0].nodes = {node};
+  const auto end = static_cast<float>(motionOf(moving).clips.at(0).duration());
+  gltf::Animation& walk = document.animations[0];
+  gltf::AnimationSampler sampler;
+  sampler.input = addFloatAccessor(moving, std::vector<float>{0, end}, 1, 0, true);
+  sampler.output = addFloatAccessor(moving, std::vector<float>{0, 0, 0, 3, 0, 0}, 3);
+  walk.channels.push_back({{}, addElement(walk.samplers, std::move(sampler)), {{}, node, "translation"}});
+  checkAsset(moving);
+  const std::string body = motionOf(moving).skeleton.joints[0].name;
+  const Vec3 travel = travelOf(motionOf(moving), body);
+  ASSERT_NEAR(travel.x(), 3, 1e-4);
+  ClipEdits resampled, rooted, reduced, inPlace;
+  resampled.frameRate = 30;
+  rooted.rootJoint = "mover";
+  reduced.tolerance = 1e-4;
+  inPlace.inPlace = true;
+  for (const ClipEdits& edits : {resampled, rooted, reduced, inPlace}) {
+    Asset asset = moving.clone();
+    editClips(asset, std::vector<std::string>{"walk"}, edits);
+    checkAsset(asset);
+    const Vec3 after = travelOf(motionOf(asset), body), wanted = edits.inPlace ? Vec3(0, travel.y(), 0) : travel;
+    EXPECT_LT((after - wanted).norm(), 2e-3) << after.transpose();
+  }
+}
+
 TEST(EditClips, ALoopCutsWhatElseMovesAndJoinsWeights) {
   Asset asset = motionAsset(walking());
   const std::vector<float> times = {0, 3}, values = {0, 0, 0, 3, 0, 0};
