@@ -7,6 +7,7 @@
 #include <cstring>
 #include <map>
 #include <numeric>
+#include <set>
 #include <span>
 #include <utility>
 
@@ -18,6 +19,7 @@
 #include "limber/asset/pose_io.h"
 #include "limber/asset/scene_graph.h"
 #include "limber/asset/unique_names.h"
+#include "limber/core/read_bounds.h"
 
 namespace limber {
 
@@ -143,10 +145,9 @@ std::string animationPlace(const gltf::Document& document, Index animation) {
 }  // namespace
 
 void checkKeySharing(const Asset& asset, std::span<const Index> animations) {
-  constexpr std::uint64_t kMostReads = 16, kFreeNumbers = std::uint64_t{4} << 20;
   std::uint64_t stored = 0, read = 0;
   for (const Asset::Buffer& buffer : asset.buffers) stored += buffer.bytes.size() / sizeof(float);
-  const std::uint64_t most = std::max(kFreeNumbers, kMostReads * stored);
+  const std::uint64_t most = read_bounds::kClipNumbers.of(stored);
   for (const Index a : animations) {
     const gltf::Animation& animation = asset.document.animations[a];
     for (const gltf::AnimationChannel& channel : animation.channels) {
@@ -210,9 +211,11 @@ class ClipReader {
     Clip clip;
     clip.name = animation.name;
     nodes_.clear();
+    moving_.clear();
     for (const gltf::AnimationChannel& channel : animation.channels) {
       if (!channel.target.node) continue;
-      if (!isJoint_[*channel.target.node] && repeatsItsNode(asset_, animation, channel)) continue;
+      const Index node = *channel.target.node;
+      if (!isJoint_[node] && !repeatsItsNode(asset_, animation, channel)) moving_.insert(node);
       readChannel(animation.samplers[channel.sampler], channel.target.path, *channel.target.node);
     }
     for (auto& [node, tracks] : nodes_) tracks.turnMirror(asset_.document.nodes[node]);
@@ -337,9 +340,12 @@ class ClipReader {
       const auto known = nodes_.find(chain[i]);
       if (known != nodes_.end()) links[i] = {&known->second, decompose(graph_.local[chain[i]])};
     }
-    warnings_.add("moving-parents",
-                  "root joints have nodes above them that move or are stretched: sampled 60 times a second",
-                  skeleton_.skeleton.joints[0].name);
+    const bool moves = std::any_of(chain.begin(), chain.end(), [&](Index n) { return moving_.count(n) > 0; });
+    if (moves || !isSimilarity(frameAbove(graph_, node))) {
+      warnings_.add("moving-parents",
+                    "root joints have nodes above them that move or are stretched: sampled 60 times a second",
+                    skeleton_.skeleton.joints[0].name);
+    }
     NodeTracks result;
     result.translation.emplace();
     result.rotation.emplace();
@@ -373,16 +379,14 @@ class ClipReader {
 
   // Of all clips: a few kilobytes of nodes and keys must not ask for gigabytes, nor for minutes.
   void countSamples(std::size_t added, std::size_t nodes) {
-    constexpr std::size_t kMostSamples = 2'000'000;
     samples_ += added;
-    if (samples_ > kMostSamples) failTooLong();
+    if (samples_ > read_bounds::kSamples.of(0)) failTooLong();
     countTransforms(added * nodes);
   }
 
   void countTransforms(std::size_t added) {
-    constexpr std::size_t kMostTransforms = std::size_t{1} << 26;
     transforms_ += added;
-    if (transforms_ > kMostTransforms) failTooLong();
+    if (transforms_ > read_bounds::kSampledNodes.of(0)) failTooLong();
   }
 
   [[noreturn]] void failTooLong() const {
@@ -415,6 +419,7 @@ class ClipReader {
   Box box_;
   Index number_ = 0;                   // of the animation being read
   std::map<Index, NodeTracks> nodes_;  // of that
+  std::set<Index> moving_;             // nodes above joints, likewise, that do not stand still
   std::size_t samples_ = 0;            // of all that were read
   std::size_t transforms_ = 0;         // of nodes, for these samples
 };

@@ -15,15 +15,14 @@ namespace limber {
 //
 // A joint without a channel stands as its node does: where that is not its rest pose, the clip has a track of one key.
 // Movement of nodes above a root joint is part of that joint's tracks; it is then sampled at all keys and 60 times a
-// second between (warning "moving-parents"). Channels that repeat the transforms of such nodes are no movement. Keys
-// that are not finite or not later than the one before, and rotations of length 0, are left out (warning
-// "invalid-keys"). Morph weights and movement of other nodes are not part of a clip. Where a node's scale mirrors,
-// tracks have rotations and scales as decompose() finds them, which the rest pose has, too.
+// second between, with the warning "moving-parents" unless their channels repeat their own transforms. Keys that are
+// not finite or not later than the one before, and rotations of length 0, are left out (warning "invalid-keys"). Morph
+// weights and movement of other nodes are not part of a clip. Where a node's scale mirrors, tracks have rotations and
+// scales as decompose() finds them, which the rest pose has, too.
 //
 // Throws Error kLimit, which names the animation, where joints below moving nodes would have more than 2 million
 // samples together or these take more than 2^26 transforms of the nodes above; and, before anything is read, where
-// channels that share keys would have more than 4 million numbers and more than 16 times what the document's buffers
-// hold.
+// channels that share keys would have more than 4 million numbers and 16 times what the document's buffers hold.
 std::vector<Clip> readClips(const Asset& asset, const AssetSkeleton& skeleton, Warnings& warnings);
 
 // The same of the animations with these numbers alone, in their order.
@@ -31,7 +30,7 @@ std::vector<Clip> readClips(const Asset& asset, const AssetSkeleton& skeleton, s
                             Warnings& warnings);
 
 // Does the channel say nothing but what its node's own transform does, as exporters write that key every node? False of
-// what is no transform. The node does not move then; nodes above a root joint do not move it.
+// what is no transform.
 bool repeatsItsNode(const Asset& asset, const gltf::Animation& animation, const gltf::AnimationChannel& channel);
 
 // Channels may share a sampler, and whoever reads them has its keys as often: throws the second of readClips' errors
