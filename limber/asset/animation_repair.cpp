@@ -15,6 +15,7 @@
 #include "limber/asset/compact_buffers.h"
 #include "limber/asset/extensions.h"
 #include "limber/asset/node_edit.h"
+#include "limber/core/read_bounds.h"
 
 namespace limber {
 
@@ -95,9 +96,8 @@ class KeyShifter {
  private:
   // Animations that share times get copies: a few kilobytes must not ask for gigabytes.
   Index addTimes(const std::vector<float>& times) {
-    constexpr std::size_t kMaxAdded = 16'000'000;
     added_ += times.size();
-    if (added_ > kMaxAdded) throw Error(ErrorCode::kLimit, "has too many keys in clips with keys before 0 s");
+    if (added_ > read_bounds::kMovedTimes.of(0)) throw Error(ErrorCode::kLimit, "has too many keys in clips with keys before 0 s");
     return addFloatAccessor(asset_, times, 1, 0, true);
   }
 

@@ -12,6 +12,7 @@
 #include "limber/asset/document_errors.h"
 #include "limber/asset/extensions.h"
 #include "limber/core/printable.h"
+#include "limber/core/read_bounds.h"
 
 namespace limber {
 
@@ -19,11 +20,6 @@ namespace {
 
 // JOINTS_n of one primitive: 64 influences of a vertex. Programs write one or two.
 constexpr std::size_t kMaxInfluenceSets = 16;
-// What the attributes, indices and morph targets of all primitives may take as numbers of four bytes, each time that
-// they are named: a small multiple of what the file stores, since it may store bytes, and a fixed sum, since primitives
-// may share accessors and these may be sparse or of zeros.
-constexpr std::uint64_t kMaxUnpackedPerByte = 8, kMaxUnpackedOfAny = std::uint64_t{192} << 20;
-
 // Neither NaN nor infinite, told from the exponent's bits so that the loop stays simple enough to run on vectors.
 bool allFinite(const std::uint8_t* data, std::size_t count) {
   constexpr std::uint32_t kExponent = 0x7f800000;
@@ -126,7 +122,7 @@ class DataChecker {
       throw Error(ErrorCode::kLimit, fmt::format("has {} sets of weights, more than {}", sets, kMaxInfluenceSets),
                   where + ".attributes", "bind vertices to fewer joints");
     }
-    if (unpacked_ <= kMaxUnpackedOfAny + kMaxUnpackedPerByte * stored_) return;
+    if (unpacked_ <= read_bounds::kVertexData.of(stored_)) return;
     throw Error(
         ErrorCode::kLimit,
         fmt::format(

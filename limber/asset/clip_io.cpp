@@ -147,7 +147,7 @@ std::string animationPlace(const gltf::Document& document, Index animation) {
 void checkKeySharing(const Asset& asset, std::span<const Index> animations) {
   std::uint64_t stored = 0, read = 0;
   for (const Asset::Buffer& buffer : asset.buffers) stored += buffer.bytes.size() / sizeof(float);
-  const std::uint64_t most = read_bounds::kClipNumbers.of(stored);
+  const std::uint64_t most = std::max(read_bounds::kClipNumbers.free, read_bounds::kClipNumbers.perStored * stored);
   for (const Index a : animations) {
     const gltf::Animation& animation = asset.document.animations[a];
     for (const gltf::AnimationChannel& channel : animation.channels) {

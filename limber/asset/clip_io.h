@@ -22,7 +22,8 @@ namespace limber {
 //
 // Throws Error kLimit, which names the animation, where joints below moving nodes would have more than 2 million
 // samples together or these take more than 2^26 transforms of the nodes above; and, before anything is read, where
-// channels that share keys would have more than 4 million numbers and 16 times what the document's buffers hold.
+// channels that share keys would have more than 4 million numbers and more than 16 times what the document's buffers
+// hold.
 std::vector<Clip> readClips(const Asset& asset, const AssetSkeleton& skeleton, Warnings& warnings);
 
 // The same of the animations with these numbers alone, in their order.

@@ -11,12 +11,11 @@
 #include "limber/asset/document_errors.h"
 #include "limber/asset/extensions.h"
 #include "limber/asset/json_access.h"
+#include "limber/core/read_bounds.h"
 
 namespace limber {
 
 namespace {
-
-constexpr std::size_t kFreeMemory = std::size_t{32} << 20, kGrowth = 64;
 
 struct Found {
   std::size_t views = 0, primitives = 0;
@@ -101,8 +100,10 @@ void dropDeclarations(gltf::Document& document) {
 
 }  // namespace
 
-DecodeBudget::DecodeBudget(const Asset& asset) : left_(kFreeMemory) {
-  for (const Asset::Buffer& buffer : asset.buffers) left_ += kGrowth * buffer.bytes.size();
+DecodeBudget::DecodeBudget(const Asset& asset) {
+  std::size_t stored = 0;
+  for (const Asset::Buffer& buffer : asset.buffers) stored += buffer.bytes.size();
+  left_ = static_cast<std::size_t>(read_bounds::kDecoded.of(stored));
 }
 
 void DecodeBudget::take(std::size_t bytes, const std::string& where) {

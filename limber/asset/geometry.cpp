@@ -16,6 +16,7 @@
 #include "limber/asset/primitive_triangles.h"
 #include "limber/asset/scene_graph.h"
 #include "limber/core/known_error.h"
+#include "limber/core/read_bounds.h"
 #include "limber/core/transform.h"
 
 namespace limber {
@@ -23,11 +24,6 @@ namespace limber {
 namespace {
 
 constexpr std::uint64_t kMaxVertices = kNoIndex - 1;
-// Vertices that instances may add to those that the file holds: a few kilobytes of nodes must not ask for gigabytes.
-constexpr std::uint64_t kMaxAddedVertices = 4'000'000;
-
-// The same for instances, which cost memory even where their mesh has no vertices.
-constexpr std::uint64_t kMaxAddedInstances = 262'144;
 
 // One showing of a mesh.
 struct MeshInstance {
@@ -94,7 +90,7 @@ std::vector<MeshInstance> meshInstances(const Asset& asset) {
   std::uint64_t total = 0;
   const auto count = [&](std::uint64_t added) {
     total += added;
-    if (total <= nodes.size() + kMaxAddedInstances) return;
+    if (total <= read_bounds::kShownInstances.of(nodes.size())) return;
     throw Error(ErrorCode::kLimit, fmt::format("the scene shows {} or more instances of meshes", total), {},
                 "rig the meshes one by one, or with fewer instances");
   };
@@ -147,7 +143,7 @@ class Collector {
         if (met.insert(*accessor).second) stored += count;
       }
     }
-    if (vertexCount_ > kMaxVertices || vertexCount_ > stored + kMaxAddedVertices) {
+    if (vertexCount_ > kMaxVertices || vertexCount_ > read_bounds::kShownVertices.of(stored)) {
       throw Error(ErrorCode::kLimit, fmt::format("the scene shows {} vertices", vertexCount_), {},
                   "rig the meshes one by one, or with fewer instances");
     }

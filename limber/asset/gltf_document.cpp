@@ -16,6 +16,7 @@
 #include "limber/asset/json_text.h"
 #include "limber/asset/uri.h"
 #include "limber/core/printable.h"
+#include "limber/core/read_bounds.h"
 
 namespace limber {
 
@@ -56,7 +57,7 @@ class FilesBeside {
   }
 
  private:
-  static constexpr std::size_t kMaxRepeated = std::size_t{64} << 20;
+  static constexpr std::uint64_t kMaxRepeated = read_bounds::kRepeatedFiles.of(0);
 
   const Resolver& resolver_;
   std::map<std::string, std::size_t> sizes_;  // of the files by path; 0 where there is none

@@ -14,6 +14,7 @@
 
 #include "limber/asset/json_access.h"
 #include "limber/core/printable.h"
+#include "limber/core/read_bounds.h"
 
 namespace limber::gltf {
 
@@ -172,9 +173,6 @@ bool same(const std::optional<Eigen::Matrix<double, rows, columns>>& a,
           const std::optional<Eigen::Matrix<double, rows, columns>>& b) {
   return a.has_value() == b.has_value() && (!a || std::equal(a->data(), a->data() + a->size(), b->data()));
 }
-
-// Objects that the lists of a document may hold, all together: some for any file, and one for each so many bytes of it.
-constexpr std::size_t kObjectsOfAny = 65536, kBytesPerObject = 16;
 
 enum class Need {
   kRequired,   // missing or wrong: an error
@@ -665,7 +663,7 @@ Document documentOf(Json json, std::size_t textSize) {
   root.requireObject();
   checkVersion(root);
   Document document;
-  std::size_t objectsLeft = kObjectsOfAny + textSize / kBytesPerObject;
+  std::size_t objectsLeft = static_cast<std::size_t>(read_bounds::kListed.of(textSize / read_bounds::kBytesListed));
   read(document, json, root, objectsLeft);
   return document;
 }

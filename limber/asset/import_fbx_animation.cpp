@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "limber/asset/accessor.h"
+#include "limber/core/read_bounds.h"
 
 namespace limber {
 
@@ -28,13 +29,7 @@ constexpr std::int64_t kShortSpan = kFbxTicksPerSecond / 24;
 constexpr double kShortSpanTolerance = 5;                          // times as large
 constexpr std::int64_t kShortestSplit = kFbxTicksPerSecond / 120;  // spans up to here are not divided
 constexpr int kMostHalvings = 10;
-// Together all clips of a document may have so many keys more than their curves, for each of these and in any case.
-constexpr std::size_t kMorePerKey = 16, kMoreKeys = std::size_t{1} << 20;
-// And so many numbers at the keys of their curves, which tracks may share: those beyond are refused.
-constexpr std::size_t kNumbersPerKey = 16, kFreeNumbers = std::size_t{4} << 20;
 constexpr std::size_t kNumbersOfAKey = 4;  // of a rotation; longer rows count as several keys
-// Clips may share the nodes of curves: what they move may be so many times the objects of the file, and so much more.
-constexpr std::size_t kMovedPerObject = 4, kFreeMoved = std::size_t{1} << 16;
 
 [[noreturn]] void failShared(const std::string& clip) {
   throw Error(ErrorCode::kLimit, "shares its curves among so much that its keys take too much memory",
@@ -43,7 +38,7 @@ constexpr std::size_t kMovedPerObject = 4, kFreeMoved = std::size_t{1} << 16;
 
 // What the clips of a document may still take.
 struct ClipBudget {
-  std::size_t moreKeys = kMoreKeys, numbers = kFreeNumbers;
+  std::size_t moreKeys = 0, numbers = 0;
 };
 
 // In what glTF can say of it: files have the same number in several precisions.
@@ -447,7 +442,7 @@ const FbxCurve* FbxAnimations::curveOf(Index node, std::string_view component) {
 }
 
 void FbxAnimations::countMoved(const FbxClipCurves& clip) {
-  if (++moved_ > kFreeMoved + kMovedPerObject * objects_.count()) failShared(clip.name);
+  if (++moved_ > read_bounds::kFbxMoved.of(objects_.count())) failShared(clip.name);
 }
 
 void FbxAnimations::readCurveNode(Index node, FbxClipCurves& clip) {
@@ -495,12 +490,10 @@ void FbxAnimations::readCurveNode(Index node, FbxClipCurves& clip) {
 
 void FbxAnimations::addClips(Asset& asset, const std::vector<std::optional<Index>>& nodeOf,
                              const std::vector<FbxShapesInUse>& shapes, double scale) const {
-  ClipBudget budget;
-  for (const auto& [object, curve] : curves_) {
-    if (!curve) continue;
-    budget.moreKeys += kMorePerKey * curve->keys().size();
-    budget.numbers += kNumbersPerKey * curve->keys().size();
-  }
+  std::uint64_t keys = 0;
+  for (const auto& [object, curve] : curves_) keys += curve ? curve->keys().size() : 0;
+  ClipBudget budget = {static_cast<std::size_t>(read_bounds::kFbxAddedKeys.of(keys)),
+                       static_cast<std::size_t>(read_bounds::kFbxClipNumbers.of(keys))};
   for (const FbxClipCurves& clip : clips_) {
     const ClipRange range = rangeOf(clip, asset.warnings);
     ClipWriter writer(asset, clip.name, range, budget);

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "limber/core/error.h"
+#include "limber/core/read_bounds.h"
 
 namespace limber {
 
@@ -12,7 +13,7 @@ namespace limber {
 // are held to a multiple of the file's size. Most files hold more of them than are made.
 class FbxBudget {
  public:
-  explicit FbxBudget(std::size_t fileSize) : left_(kFreeNumbers + kNumbersPerByte * std::uint64_t{fileSize}) {}
+  explicit FbxBudget(std::size_t fileSize) : left_(read_bounds::kFbxNumbers.of(fileSize)) {}
 
   // Before so many numbers (floats, indices) are made. Throws Error kLimit.
   void spend(std::size_t numbers) {
@@ -24,8 +25,6 @@ class FbxBudget {
   }
 
  private:
-  static constexpr std::uint64_t kFreeNumbers = std::uint64_t{1} << 26, kNumbersPerByte = 16;
-
   std::uint64_t left_;
 };
 

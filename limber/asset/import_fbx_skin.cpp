@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "limber/core/read_bounds.h"
 #include "limber/fbx/fbx_values.h"
 
 namespace limber {
@@ -208,7 +209,6 @@ void FbxShapeChannel::addWeights(double percentage, std::vector<double>& weights
 }
 
 FbxShapes readFbxShapes(const FbxObjects& objects, Index geometry, FbxBudget& budget, Warnings& warnings) {
-  constexpr double kMostMoves = 1 << 26;  // vertices times targets: 768 megabytes of a document
   const Index points = fbxControlPointCount(*objects[geometry].node);
   FbxShapes result;
   for (const Index deformer : objects.sources(geometry, "Deformer")) {
@@ -237,7 +237,7 @@ FbxShapes readFbxShapes(const FbxObjects& objects, Index geometry, FbxBudget& bu
       }
       std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
       for (const auto& [percent, shape] : order) {
-        if (static_cast<double>(points) * static_cast<double>(result.targets.size() + 1) > kMostMoves) {
+        if (std::uint64_t{points} * (result.targets.size() + 1) > read_bounds::kFbxShapeVertices.of(0)) {
           warnings.add("blend-shapes", "blend shapes beyond what a file may hold are left out", objects[shape].name);
           continue;
         }

@@ -29,6 +29,7 @@
 #include "limber/asset/import_text.h"
 #include "limber/asset/write.h"
 #include "limber/core/names.h"
+#include "limber/core/read_bounds.h"
 #include "limber/core/srgb.h"
 
 namespace limber {
@@ -340,7 +341,7 @@ Asset unpack(ByteSpan message) {
 // times that time and twice the memory, and what a small file with its pictures takes.
 SandboxLimits limitsFor(std::size_t size) {
   SandboxLimits limits;
-  limits.memory = (std::size_t{384} << 20) + 48 * size;
+  limits.memory = static_cast<std::size_t>(read_bounds::kAssimp.of(size));
   limits.seconds = 1 + 2 * static_cast<double>(size) / (1 << 20);
   return limits;
 }

@@ -13,6 +13,7 @@
 #include "limber/asset/node_edit.h"
 #include "limber/asset/pose_io.h"
 #include "limber/asset/weight_attributes.h"
+#include "limber/core/read_bounds.h"
 
 namespace limber {
 
@@ -334,7 +335,6 @@ std::vector<bool> skinsToJoin(const Asset& asset, const BindPose& pose) {
 
 // A few kilobytes of nodes must not ask for gigabytes of copies, one for each skin that a mesh is shown with.
 void checkCopies(const gltf::Document& document, const std::vector<bool>& isJoined) {
-  constexpr std::uint64_t kMaxCopied = 16'000'000;
   std::set<std::pair<Index, Index>> uses;
   std::set<Index> meshes;
   std::uint64_t copied = 0;
@@ -345,7 +345,7 @@ void checkCopies(const gltf::Document& document, const std::vector<bool>& isJoin
       const std::optional<Index> position = primitive.attributes.find("POSITION");
       if (position) copied += document.accessors[*position].count * (1 + primitive.targets.size());
     }
-    if (copied > kMaxCopied) {
+    if (copied > read_bounds::kRebound.of(0)) {
       throw Error(ErrorCode::kLimit, "has meshes of too many vertices that are shown with several skins");
     }
   }

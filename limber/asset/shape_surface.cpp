@@ -9,6 +9,7 @@
 #include "limber/asset/node_edit.h"
 #include "limber/asset/pose_io.h"
 #include "limber/asset/shape_tracks.h"
+#include "limber/core/read_bounds.h"
 
 namespace limber {
 
@@ -22,18 +23,16 @@ std::size_t shapeCount(const gltf::Document& document, const gltf::Node& node) {
 // A few kilobytes of nodes must not ask for gigabytes, nor for minutes where their channels share keys. `counts`: of
 // each node's shapes.
 void checkSizes(const Asset& asset, const std::vector<std::size_t>& counts, std::optional<Index> animation) {
-  constexpr std::size_t kMaxWeights = 16'000'000;
-  constexpr std::uint64_t kMaxKeyNumbers = 128'000'000;
   std::size_t total = 0;
   std::uint64_t keyNumbers = 0;
   for (Index n = 0; n < counts.size(); ++n) {
     if (counts[n] == 0) continue;
     total += counts[n];
     if (animation) keyNumbers += shapeTrackSize(asset, n, counts[n], *animation);
-    if (total > kMaxWeights) {
+    if (total > read_bounds::kShapeWeights.of(0)) {
       throw Error(ErrorCode::kLimit, "has too many nodes that show meshes with blend shapes", asset.name);
     }
-    if (keyNumbers > kMaxKeyNumbers) {
+    if (keyNumbers > read_bounds::kShapeKeys.of(0)) {
       throw Error(ErrorCode::kLimit, "has too many keys of blend shapes in one clip", asset.name);
     }
   }

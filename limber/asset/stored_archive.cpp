@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "limber/core/inflate.h"
+#include "limber/core/read_bounds.h"
 
 namespace limber {
 
@@ -17,8 +18,7 @@ namespace {
 constexpr std::uint32_t kLocalFile = 0x04034b50, kDirectoryEntry = 0x02014b50, kDirectoryEnd = 0x06054b50;
 constexpr std::size_t kLocalSize = 30, kEntrySize = 46, kEndSize = 22, kMostComment = 65535;
 constexpr std::uint32_t kStored = 0, kDeflated = 8;  // ways of packing
-// Of files together: NumPy's and texts of models are packed some ten times.
-constexpr std::uint64_t kMaxUnpackedOfAny = 64 << 20, kMaxUnpackedPerByte = 32, kMaxUnpacked = 2'000'000'000;
+constexpr std::uint64_t kMaxUnpacked = 2'000'000'000;  // of files together
 constexpr std::uint32_t kInZip64 = 0xffffffff;  // in place of a number that stands elsewhere
 
 // CRC-32, the polynomial reversed, a byte at a time by a table.
@@ -159,7 +159,7 @@ std::map<std::string, Bytes> ZipArchive::files(const Asked& isAskedFor) const {
 }
 
 std::size_t ZipArchive::maxUnpacked() const {
-  return static_cast<std::size_t>(std::min(kMaxUnpacked, kMaxUnpackedOfAny + kMaxUnpackedPerByte * bytes_.size()));
+  return static_cast<std::size_t>(std::min(kMaxUnpacked, read_bounds::kArchive.of(bytes_.size())));
 }
 
 void ZipArchive::checkSize(std::uint64_t unpacked) const {

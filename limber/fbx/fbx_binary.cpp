@@ -1,5 +1,6 @@
 // The layout has no public specification; this follows Blender's notes on it ("FBX binary file format specification",
 // code.blender.org 2013) and what its exporter writes.
+#include "limber/core/read_bounds.h"
 #include "limber/fbx/fbx_binary.h"
 
 #include <algorithm>
@@ -18,14 +19,10 @@ namespace {
 constexpr std::size_t kVersionAt = 23, kHeaderSize = 27;
 constexpr std::uint32_t kFirstWithLongOffsets = 7500;
 
-// Together all arrays of a file may inflate to so many times its size, and this much more. Blender's densest files stay
-// below 20; deflate itself would allow 1032.
-constexpr std::size_t kMostInflation = 32, kFreeInflation = std::size_t{16} << 20;
-
 class BinaryParser {
  public:
   explicit BinaryParser(ByteSpan bytes)
-      : bytes_(bytes), inflationLeft_(kFreeInflation + kMostInflation * bytes.size()) {}
+      : bytes_(bytes), inflationLeft_(static_cast<std::size_t>(read_bounds::kFbxArrays.of(bytes.size()))) {}
 
   FbxFile parse() {
     if (bytes_.size() < kHeaderSize) fail("is cut off");
