@@ -472,7 +472,7 @@ void describe(Visit& visit, Scene& scene) {
 template <typename Visit>
 void describe(Visit& visit, AnimationSampler& sampler) {
   visit.required("input", sampler.input);
-  visit.value("interpolation", sampler.interpolation, Interpolation::kLinear);
+  visit.tolerated("interpolation", sampler.interpolation, Interpolation::kLinear);
   visit.required("output", sampler.output);
 }
 

@@ -494,7 +494,6 @@ TEST(GltfJson, ErrorsSayWhere) {
       {"/skins/0/joints", "", "is missing"},
       {"/skins/0/joints/0", "null", "must be a number"},
       {"/animations/0/samplers/0/input", "", "is missing"},
-      {"/animations/0/samplers/0/interpolation", "1", "must be a string"},
       {"/animations/0/channels/0/sampler", "", "is missing"},
       {"/animations/0/channels/0/target", "", "is missing"},
       {"/animations/0/channels/0/target/node", "-1", "must be a whole number that is not negative, and is -1"},

@@ -304,6 +304,14 @@ TEST(ReadAsset, TextInUtf16IsToldApart) {
   }
 }
 
+// As an exporter of Maya writes it.
+TEST(ReadAsset, AnInterpolationThatIsNoNameIsLinear) {
+  GltfBuilder model = everythingModel();
+  model.json["animations"][0]["samplers"][0]["interpolation"] = 0;
+  const Asset asset = readAsset(model.glb(), "m.glb");
+  EXPECT_EQ(asset.document.animations.at(0).samplers.at(0).interpolation, Interpolation::kLinear);
+}
+
 TEST(ReadAsset, ARotationOfLengthZeroIsNone) {
   GltfBuilder model = everythingModel();
   model.json["nodes"][1]["rotation"] = {0, 0, 0, 0};
