@@ -8,14 +8,11 @@
 #include <fmt/format.h>
 
 #include "limber/asset/document_errors.h"
+#include "limber/core/read_bounds.h"
 
 namespace limber {
 
 namespace {
-
-// An accessor without data stands for zeros, as many as it likes; what such a file may ask for is held to this or to
-// the size of its buffers, whichever is more.
-constexpr std::size_t kFreeZeros = 4096;
 
 // glTF allows 252. Others still read well: products of sizes are taken in 64 bits, in WebAssembly too.
 constexpr std::size_t kMaxStride = 65536;
@@ -71,12 +68,12 @@ void findData(const Asset& asset, const gltf::Accessor& accessor, const std::str
 }
 
 void checkZeroCount(const Asset& asset, const std::string& place, Index count) {
-  std::size_t allowed = kFreeZeros;
+  std::size_t longest = 0;
   for (const Asset::Buffer& buffer : asset.buffers) {
-    if (allowed >= count) break;
-    allowed = std::max(allowed, buffer.bytes.size());
+    if (count <= read_bounds::kZeros.larger(longest)) break;
+    longest = std::max(longest, buffer.bytes.size());
   }
-  if (count > allowed) {
+  if (count > read_bounds::kZeros.larger(longest)) {
     throw Error(ErrorCode::kLimit, fmt::format("has {} elements without data, more than the file's size allows", count),
                 place);
   }

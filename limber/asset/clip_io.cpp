@@ -91,13 +91,12 @@ Transform ownTransform(const gltf::Node& node) {
 }
 
 bool isNear(std::span<const float> values, const Eigen::Vector4d& own) {
-  constexpr double kRounding = 1e-6;  // of single precision
   double squares = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
     const double off = double{values[i]} - own[static_cast<Eigen::Index>(i)];
     squares += off * off;
   }
-  return std::sqrt(squares) <= kRounding * std::max(own.norm(), 1.0);  // false for NaN
+  return std::sqrt(squares) <= double{kStanding} * std::max(own.norm(), 1.0);  // false for NaN
 }
 
 // What the nodes above a root joint do to it, if they stand still.
@@ -147,7 +146,7 @@ std::string animationPlace(const gltf::Document& document, Index animation) {
 void checkKeySharing(const Asset& asset, std::span<const Index> animations) {
   std::uint64_t stored = 0, read = 0;
   for (const Asset::Buffer& buffer : asset.buffers) stored += buffer.bytes.size() / sizeof(float);
-  const std::uint64_t most = std::max(read_bounds::kClipNumbers.free, read_bounds::kClipNumbers.perStored * stored);
+  const std::uint64_t most = read_bounds::kClipNumbers.larger(stored);
   for (const Index a : animations) {
     const gltf::Animation& animation = asset.document.animations[a];
     for (const gltf::AnimationChannel& channel : animation.channels) {

@@ -2,6 +2,7 @@
 // or minutes, whatever they name again and again, and no honest file is refused.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 namespace limber {
@@ -11,6 +12,7 @@ struct ReadBound {
   std::uint64_t free = 0, perStored = 0;
 
   constexpr std::uint64_t of(std::uint64_t stored) const { return free + perStored * stored; }
+  constexpr std::uint64_t larger(std::uint64_t stored) const { return std::max(free, perStored * stored); }
 };
 
 namespace read_bounds {
@@ -32,6 +34,9 @@ inline constexpr ReadBound kFbxArrays = {16 * kMega, 32};
 inline constexpr ReadBound kRepeatedFiles = {64 * kMega, 0};
 // Assimp's process. A text of a megabyte takes it some 20 megabytes.
 inline constexpr ReadBound kAssimp = {384 * kMega, 48};
+
+// Elements of an accessor without data, which are zeros; the larger of the two, for each byte of the longest buffer.
+inline constexpr ReadBound kZeros = {4096, 1};
 
 // Numbers of four bytes that are made of an FBX file, for each byte.
 inline constexpr ReadBound kFbxNumbers = {64 * kMega, 16};

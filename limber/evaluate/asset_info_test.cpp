@@ -5,12 +5,10 @@
 #include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor.h"
-#include "limber/asset/testing/scene_builder.h"
+#include "limber/asset/testing/two_bind_poses.h"
 
 namespace limber {
 namespace {
-
-using testing::SceneBuilder;
 
 // Two tetrahedra's worth of triangles: one closed, one with a face missing, each with vertices of its own.
 Asset twoTetrahedra() {
@@ -132,33 +130,12 @@ TEST(InspectAsset, AFileWithoutATriangleIsToldAsSuch) {
   EXPECT_EQ(info.nodes, 1u);
 }
 
-// Two tetrahedra, each held by one of two joints, whose nodes stand as the first's skin is bound. The second's skin
-// holds its mesh `off` its place; at (0, 0, -3) its inverse binds are the identity, as which no binds are read.
-Asset partsToInspect(const Vec3f& off, bool hasBinds = true) {
-  SceneBuilder scene;
-  const Index left = scene.addNode({{"name", "left"}});
-  const Index right = scene.addNode({{"name", "right"}, {"translation", {0, 0, 3}}});
-  const Affine toRight = testing::translation(0, 0, -3);
-  const Affine elsewhere = toRight * testing::translation(-off.x(), -off.y(), -off.z());
-  std::vector<Affine> binds = {Affine::Identity(), toRight}, others = {Affine::Identity(), elsewhere};
-  if (!hasBinds) others.clear();
-  const Index skins[] = {scene.addSkin({left, right}, binds), scene.addSkin({left, right}, others)};
-  std::vector<Index> roots = {left, right};
-  for (std::uint8_t part = 0; part < 2; ++part) {
-    const Vec3f place(2.0f * part, 0, 0);
-    const Index mesh = scene.addTetrahedron(part == 1 ? Vec3f(place + off) : place);
-    scene.bindRigidly(mesh, std::vector<std::uint8_t>(4, part));
-    roots.push_back(scene.addNode({{"mesh", mesh}, {"skin", skins[part]}}));
-  }
-  scene.asset().document.scene = scene.addScene(roots);
-  return scene.build();
-}
-
 TEST(InspectAsset, BoundsAreThoseOfOneBindPose) {
-  const Box wanted = inspectAsset(partsToInspect(Vec3f::Zero())).bounds;
+  const Box wanted = inspectAsset(testing::partsInTwoBindPoses(Vec3f::Zero())).bounds;
   EXPECT_EQ(wanted.min, Vec3(0, 0, 0));
   EXPECT_EQ(wanted.max, Vec3(3, 1, 1));
-  const Asset elsewhere = partsToInspect({0, 5, 0}), unbound = partsToInspect({0, 0, -3}, false);
+  const Asset elsewhere = testing::partsInTwoBindPoses({0, 5, 0}),
+              unbound = testing::partsInTwoBindPoses({0, 0, -3}, false);
   ASSERT_FALSE(unbound.document.skins[1].inverseBindMatrices);
   for (const Asset* asset : {&elsewhere, &unbound}) {
     const AssetInfo info = inspectAsset(*asset);

@@ -5,39 +5,20 @@
 
 #include "limber/asset/asset.h"
 #include "limber/asset/testing/scene_builder.h"
+#include "limber/asset/testing/two_bind_poses.h"
 
 namespace limber {
 namespace {
 
-using testing::SceneBuilder;
-
-// Two tetrahedra, each held by one of two joints. Skins of both joints; the second's holds its mesh `off` its place.
-Asset twoParts(const Vec3f& off) {
-  SceneBuilder scene;
-  const Index left = scene.addNode({{"name", "left"}}), right = scene.addNode({{"name", "right"}});
-  const Index skins[] = {
-      scene.addSkin({left, right}, {Affine::Identity(), Affine::Identity()}),
-      scene.addSkin({left, right}, {Affine::Identity(), testing::translation(-off.x(), -off.y(), -off.z())})};
-  std::vector<Index> roots = {left, right};
-  for (std::uint8_t part = 0; part < 2; ++part) {
-    const Vec3f place(2.0f * part, 0, 0);
-    const Index mesh = scene.addTetrahedron(part == 1 ? Vec3f(place + off) : place);
-    scene.bindRigidly(mesh, std::vector<std::uint8_t>(4, part));
-    roots.push_back(scene.addNode({{"mesh", mesh}, {"skin", skins[part]}}));
-  }
-  scene.asset().document.scene = scene.addScene(roots);
-  return scene.build();
-}
-
 TEST(ReadSkinnedModel, BringsSkinsToOneBindPose) {
-  const std::vector<Vec3f> wanted = readSkinnedModel(twoParts(Vec3f::Zero())).mesh.positions;
-  const std::vector<Vec3f> found = readSkinnedModel(twoParts({0, 5, 0})).mesh.positions;
+  const std::vector<Vec3f> wanted = readSkinnedModel(testing::partsInTwoBindPoses(Vec3f::Zero())).mesh.positions;
+  const std::vector<Vec3f> found = readSkinnedModel(testing::partsInTwoBindPoses({0, 5, 0})).mesh.positions;
   ASSERT_EQ(found.size(), wanted.size());
   for (std::size_t v = 0; v < wanted.size(); ++v) EXPECT_LT((found[v] - wanted[v]).norm(), 1e-5f) << v;
 }
 
 TEST(ReadSkinnedModel, HasTheShapesThatAreInUse) {
-  Asset asset = twoParts(Vec3f::Zero());
+  Asset asset = testing::partsInTwoBindPoses(Vec3f::Zero());
   const std::vector<Vec3f> before = readSkinnedModel(asset).mesh.positions;
   const std::vector<float> offsets = {0, 3, 0, 0, 3, 0, 0, 3, 0, 0, 3, 0};
   asset.document.meshes[0].primitives[0].targets.emplace_back().set(

@@ -13,6 +13,7 @@
 #include "limber/asset/stored_archive.h"
 #include "limber/asset/testing/gltf_builder.h"
 #include "limber/asset/testing/scene_builder.h"
+#include "limber/asset/testing/two_bind_poses.h"
 #include "limber/usd/usd_stage.h"
 
 namespace limber {
@@ -340,28 +341,6 @@ TEST(IsUsdFormat, GoesByTheExtension) {
   EXPECT_FALSE(isUsdFormat("b.glb"));
 }
 
-// Two tetrahedra, each held by one of two joints, whose nodes stand as the first's skin is bound. The second's skin
-// holds its mesh `off` its place; at (0, 0, -3) its inverse binds are the identity, as which no binds are read.
-Asset partsToWrite(const Vec3f& off, bool hasBinds = true) {
-  SceneBuilder scene;
-  const Index left = scene.addNode({{"name", "left"}});
-  const Index right = scene.addNode({{"name", "right"}, {"translation", {0, 0, 3}}});
-  const Affine toRight = testing::translation(0, 0, -3);
-  const Affine elsewhere = toRight * testing::translation(-off.x(), -off.y(), -off.z());
-  std::vector<Affine> binds = {Affine::Identity(), toRight}, others = {Affine::Identity(), elsewhere};
-  if (!hasBinds) others.clear();
-  const Index skins[] = {scene.addSkin({left, right}, binds), scene.addSkin({left, right}, others)};
-  std::vector<Index> roots = {left, right};
-  for (std::uint8_t part = 0; part < 2; ++part) {
-    const Vec3f place(2.0f * part, 0, 0);
-    const Index mesh = scene.addTetrahedron(part == 1 ? Vec3f(place + off) : place);
-    scene.bindRigidly(mesh, std::vector<std::uint8_t>(4, part));
-    roots.push_back(scene.addNode({{"mesh", mesh}, {"skin", skins[part]}}));
-  }
-  scene.asset().document.scene = scene.addScene(roots);
-  return scene.build();
-}
-
 // Of all meshes of the text, one after the other.
 std::vector<double> pointsOf(const std::string& text) {
   std::vector<double> points;
@@ -374,9 +353,9 @@ std::vector<double> pointsOf(const std::string& text) {
 }
 
 TEST(UsdFiles, PointsAreThoseOfOneBindPose) {
-  const std::vector<double> wanted = pointsOf(textOf(partsToWrite(Vec3f::Zero())));
+  const std::vector<double> wanted = pointsOf(textOf(testing::partsInTwoBindPoses(Vec3f::Zero())));
   ASSERT_EQ(wanted.size(), 24u);
-  const Asset elsewhere = partsToWrite({0, 5, 0}), unbound = partsToWrite({0, 0, -3}, false);
+  const Asset elsewhere = testing::partsInTwoBindPoses({0, 5, 0}), unbound = testing::partsInTwoBindPoses({0, 0, -3}, false);
   ASSERT_FALSE(unbound.document.skins[1].inverseBindMatrices);
   for (const Asset* asset : {&elsewhere, &unbound}) {
     EXPECT_THAT(pointsOf(textOf(*asset)), ::testing::Pointwise(::testing::DoubleNear(1e-5), wanted));
