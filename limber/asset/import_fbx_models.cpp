@@ -77,7 +77,7 @@ void FbxModels::findCompensated(const std::vector<bool>& curvesScale) {
     depth[m] = depth[parent] + 1;
     const bool parentScales = curvesScale[parent] || models_[parent].transform.rest.scaling != Vec3::Ones();
     const bool matters = model.transform.inherit == FbxInherit::kRrSs  ? isUneven[parent]
-                         : model.transform.inherit == FbxInherit::kRrs ? isUneven[parent] || parentScales
+                         : model.transform.inherit == FbxInherit::kRrs ? parentScales
                                                                        : false;
     model.isCompensated = matters && depth[m] <= kLongestCompensated;
     isUneven[m] = isUneven[m] || isUneven[parent];

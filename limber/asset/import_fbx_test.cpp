@@ -14,6 +14,7 @@
 #include "limber/asset/import_fbx_curve.h"
 #include "limber/asset/import_fbx_mesh.h"
 #include "limber/asset/import_fbx_transform.h"
+#include "limber/asset/pose_io.h"
 #include "limber/asset/scene_graph.h"
 #include "limber/asset/shape_name.h"
 #include "limber/asset/testing/gltf_builder.h"
@@ -139,6 +140,19 @@ TEST(ImportFbx7, ScalesComeDownAsInheritTypeSays) {
   EXPECT_LT((tip(1) - Vec3(2 - 2, 0, 0)).norm(), 1e-6);
   EXPECT_LT((tip(0) - Vec3(2 - 1, 0, 0)).norm(), 1e-6);
   EXPECT_LT((tip(2) - Vec3(2 - 1, 0, 0)).norm(), 1e-6);
+}
+
+// Maya's segment scale compensate: the parent's own scale alone is undone, an uneven one further up shears the child.
+TEST(ImportFbx7, WithoutItsParentsScaleAModelKeepsItsGrandparents) {
+  const Asset asset = importText(
+      model(1, "Grandparent", "Null", vector("Lcl Scaling", {1, 3, 1})) +
+          model(2, "Parent", "Null", vector("Lcl Scaling", {2, 1, 1}) + vector("Lcl Rotation", {0, 0, 90})) +
+          model(3, "Child", "Null",
+                vector("Lcl Translation", {1, 0, 0}) + vector("Lcl Rotation", {0, 0, 45}) + number("InheritType", 2)),
+      link(1, 0) + link(2, 1) + link(3, 2));
+  // The child lies at (0, 2 * 3, 0); its x is turned by 90 + 45 degrees, then stretched along the world's y.
+  const double half = std::sqrt(.5);
+  EXPECT_LT((readSceneGraph(asset.document).world[2] * Vec3(1, 0, 0) - Vec3(-half, 6 + 3 * half, 0)).norm(), 1e-6);
 }
 
 // glTF allows no matrix where there are tracks.
@@ -725,6 +739,21 @@ TEST(ImportFbx7, BrokenMeshesAreRefused) {
   EXPECT_THROW(with(array("Vertices", kTriangle) + wholes("PolygonVertexIndex", {0, 1, -5}))(), Error);
   EXPECT_THROW(with("Vertices: *3 {\na: nan,0,0\n}\n" + wholes("PolygonVertexIndex", {0, 0, -1}))(), Error);
   EXPECT_THROW(with(array("Vertices", {1e300, 0, 0}) + wholes("PolygonVertexIndex", {0, 0, -1}))(), Error);
+}
+
+TEST(ImportFbx7, NumbersThatAreNoneLoseWhatTheySayAlone) {
+  std::string holed = curve(20, {0, 1, 2}, {0, 7, 4});
+  holed.replace(holed.find("0,7"), 3, "0,nan");
+  const ReadTrack track = trackOf(animated({}, "Lcl Translation", {holed, "", ""}), "translation");
+  ASSERT_EQ(track.times, (std::vector<float>{0, 2}));
+  EXPECT_EQ(track.values[3], 4);
+
+  std::string turned = triangle(3);
+  turned.insert(turned.rfind('}'),
+                "LayerElementNormal: 0 {\nMappingInformationType: \"AllSame\"\nReferenceInformationType: "
+                "\"Direct\"\nNormals: *3 {\na: 0,nan,1\n}\n}\n");
+  const Asset asset = importText(model(1, "M", "Mesh") + turned, link(1, 0) + link(3, 1));
+  for (const Vec3f& normal : readNormals(asset, collectGeometry(asset))) EXPECT_NEAR(normal.norm(), 1, 1e-6);
 }
 
 TEST(FbxCurve, AutomaticSlopesDoNotOvershootWhereTheyAreClamped) {

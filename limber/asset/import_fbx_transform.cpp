@@ -66,16 +66,16 @@ FbxTransform fbxTransform(const FbxProperties& model) {
 Affine inheritedWorld(const Affine& parentWorld, const Vec3& parentScaling, const Transform& local,
                       FbxInherit inherit) {
   if (inherit == FbxInherit::kRSrs) return parentWorld * local.toAffine();
-  const Mat3 rotation = decompose(parentWorld).rotation.toRotationMatrix();
-  Mat3 scale = rotation.transpose() * parentWorld.linear();
-  if (inherit == FbxInherit::kRrs) {
-    for (int i = 0; i < 3; ++i) {
-      if (parentScaling[i] != 0) scale.col(i) /= parentScaling[i];
-    }
-  }
   Affine result;
-  result.linear() = rotation * local.rotation.toRotationMatrix() * scale * local.scale.asDiagonal();
   result.translation() = parentWorld * local.translation;
+  const Mat3 turn = local.rotation.toRotationMatrix();
+  if (inherit == FbxInherit::kRrs) {
+    const Vec3 undone = (parentScaling.array() == 0).select(1, parentScaling.cwiseInverse());
+    result.linear() = parentWorld.linear() * undone.asDiagonal() * turn * local.scale.asDiagonal();
+  } else {
+    const Mat3 rotation = decompose(parentWorld).rotation.toRotationMatrix();
+    result.linear() = rotation * turn * rotation.transpose() * parentWorld.linear() * local.scale.asDiagonal();
+  }
   return result;
 }
 

@@ -55,8 +55,7 @@ void freezePrimitive(Asset& asset, gltf::Primitive& primitive, const Geometry& g
                      attributes.erase("TANGENT") ? 1 : 0);
   asset.warnings.add("morph-targets", "parts lose their morph targets, which no longer fit", {},
                      primitive.targets.empty() ? 0 : 1);
-  asset.warnings.add("many-influences", "of more than eight joints of a vertex only the strongest move it", {},
-                     attributes.find("JOINTS_2") ? 1 : 0);
+  reportLostInfluences(primitive, asset.document.meshes[instance.mesh].name, asset.warnings);
   primitive.targets.clear();
   eraseWeightAttributes(primitive);
   if (instance.toWorld.linear().determinant() < 0) turnTriangles(asset, primitive, geometry, instance);

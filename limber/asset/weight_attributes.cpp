@@ -95,6 +95,11 @@ std::vector<InfluenceSet> readInfluenceSets(const Asset& asset, const gltf::Prim
   }
 }
 
+void reportLostInfluences(const gltf::Primitive& primitive, const std::string& mesh, Warnings& warnings) {
+  warnings.add("many-influences", "of more than eight joints of a vertex only the strongest move it", mesh,
+               primitive.attributes.find("JOINTS_2") ? 1 : 0);
+}
+
 void eraseWeightAttributes(gltf::Primitive& primitive) {
   const gltf::Attributes all = primitive.attributes;
   for (const auto& [name, accessor] : all) {

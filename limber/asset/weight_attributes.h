@@ -37,6 +37,9 @@ struct InfluenceSet {
 };
 std::vector<InfluenceSet> readInfluenceSets(const Asset& asset, const gltf::Primitive& primitive);
 
+// Reports a skinned primitive whose vertices have more joints than the eight of SkinWeights (`many-influences`).
+void reportLostInfluences(const gltf::Primitive& primitive, const std::string& mesh, Warnings& warnings);
+
 // Takes every JOINTS_n and WEIGHTS_n out of a primitive.
 void eraseWeightAttributes(gltf::Primitive& primitive);
 

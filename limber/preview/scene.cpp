@@ -6,6 +6,7 @@
 #include "limber/asset/geometry.h"
 #include "limber/asset/motion_io.h"
 #include "limber/asset/pose_io.h"
+#include "limber/asset/weight_attributes.h"
 #include "limber/preview/palette.h"
 #include "limber/preview/scene_materials.h"
 #include "limber/preview/shapes.h"
@@ -68,7 +69,10 @@ void addSurface(const Asset& asset, Geometry geometry, Scene& scene) {
   scene.triangles = std::move(geometry.triangles);
   const std::vector<bool> isTextured = addMaterials(asset, geometry, scene);
   for (std::size_t i = 0; i < geometry.instances.size(); ++i) {
-    colorInstance(asset, geometry.instances[i], isTextured[i], scene.colors);
+    const PrimitiveInstance& instance = geometry.instances[i];
+    colorInstance(asset, instance, isTextured[i], scene.colors);
+    const gltf::Mesh& mesh = asset.document.meshes[instance.mesh];
+    reportLostInfluences(mesh.primitives[instance.primitive], mesh.name, scene.warnings);
   }
   scene.positions = std::move(geometry.positions);
 }

@@ -45,7 +45,7 @@ struct Scene {
   std::vector<Bone> bones;            // segments, as bonesOf gives them
   SkinWeights weights;                // empty, or one row for each vertex, over `joints`
   std::vector<Vec3f> boundPositions;  // of a rigged model: #V, where the vertices are while no joint moves; else empty
-  Warnings warnings;                  // of what cannot be drawn as it is: undrawn-textures
+  Warnings warnings;                  // of what cannot be drawn as it is: undrawn-textures, many-influences
 };
 
 // The model as its file shows it before any clip plays: a rigged one in the pose in which its joints' nodes stand; a

@@ -5,6 +5,7 @@
 #include "limber/asset/pose_io.h"
 #include "limber/pipeline/auto_rig.h"
 #include "limber/samples/samples.h"
+#include "warning_kinds.h"
 
 namespace limber {
 namespace {
@@ -33,6 +34,21 @@ TEST(Scene, ShowsARiggedModelAsItsJointsStand) {
     EXPECT_LT((after.joints[j].position - turned(before.joints[j].position)).norm(), 1e-5);
   }
   EXPECT_EQ(after.weights.weights, before.weights.weights);
+}
+
+TEST(Scene, ReportsJointsBeyondEightOfAVertex) {
+  Asset asset = makeSample("stool");
+  AutoRigOptions options;
+  options.rig.handles = 3;
+  Progress progress;
+  autoRig(asset, options, progress);
+  EXPECT_EQ(testing::countOf(makeScene(asset).warnings, "many-influences"), 0u);
+  gltf::Attributes& attributes = asset.document.meshes.at(0).primitives.at(0).attributes;
+  for (const char* set : {"_1", "_2"}) {
+    attributes.set(std::string("JOINTS") + set, attributes.find("JOINTS_0").value());
+    attributes.set(std::string("WEIGHTS") + set, attributes.find("WEIGHTS_0").value());
+  }
+  EXPECT_EQ(testing::countOf(makeScene(asset).warnings, "many-influences"), 1u);
 }
 
 }  // namespace

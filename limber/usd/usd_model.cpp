@@ -16,6 +16,7 @@
 #include "limber/asset/shape_name.h"
 #include "limber/asset/shape_tracks.h"
 #include "limber/asset/unique_names.h"
+#include "limber/asset/weight_attributes.h"
 #include "limber/usd/usd_stage.h"
 
 namespace limber {
@@ -180,10 +181,7 @@ class ModelReader {
     readColors(primitive, mesh);
     if (!isStill_) {
       readInfluences(instance.firstVertex, mesh);
-      if (primitive.attributes.find("JOINTS_2")) {
-        model_.warnings.add("many-influences", "of more than eight joints of a vertex only the strongest move it",
-                            mesh.name);
-      }
+      reportLostInfluences(primitive, mesh.name, model_.warnings);
       readShapes(instance, source, primitive, mesh);
     }
     model_.meshes.push_back(std::move(mesh));
