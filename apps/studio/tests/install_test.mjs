@@ -113,6 +113,19 @@ async function dragAHandle(of) {
 /** The page asks whether there is another version. */
 const lookForUpdate = (of = page) => of.evaluate(async () => { await (await navigator.serviceWorker.ready).update().catch(() => {}); });
 
+/** Sends the page a file of the content, as often as `repeats` says, as the system does where another app shares one. */
+async function share(name, repeats, content) {
+  await Promise.all([page.waitForURL(/shared/), page.evaluate((file) => {
+    const form = document.createElement('form'), files = new DataTransfer(), input = document.createElement('input');
+    files.items.add(new File(Array(file.repeats).fill(new Blob([new Uint8Array(file.content)])), file.name));
+    Object.assign(input, { type: 'file', name: 'files', files: files.files });
+    Object.assign(form, { method: 'post', enctype: 'multipart/form-data', action: './share' });
+    form.append(input);
+    document.body.append(form);
+    form.submit();
+  }, { name, repeats, content })]);
+}
+
 const cases = {
   async 'the manifest is one that Chromium installs, with its icons'() {
     await visit();
@@ -247,20 +260,16 @@ const cases = {
     await other.close();
   },
   async 'a file that another app shares is opened, and kept nowhere but in the document'() {
-    const bytes = [...readFileSync(join(output, 'private.glb'))];
-    await Promise.all([page.waitForURL(/shared/), page.evaluate((content) => {
-      const form = document.createElement('form'), files = new DataTransfer(), input = document.createElement('input');
-      files.items.add(new File([new Uint8Array(content)], 'shared.glb'));
-      Object.assign(input, { type: 'file', name: 'files', files: files.files });
-      Object.assign(form, { method: 'post', enctype: 'multipart/form-data', action: './share' });
-      form.append(input);
-      document.body.append(form);
-      form.submit();
-    }, bytes)]);
+    await share('shared.glb', 1, [...readFileSync(join(output, 'private.glb'))]);
     await page.waitForFunction(() => globalThis.limberStudio?.state()?.name.startsWith('shared'));
     await settled(page);
     assert.equal(new URL(page.url()).search, '');
     assert.deepEqual(Object.values(await kept()).flatMap(Object.keys).filter((url) => /share/.test(url)), []);
+  },
+  async 'a shared file beyond what a browser can open is refused by its size'() {
+    await share('large.glb', 501, Array(1e6).fill(0));
+    await page.getByText('This file is too large for a browser').waitFor();
+    assert.doesNotMatch(await page.evaluate(() => globalThis.limberStudio.state()?.name ?? ''), /^large/);
   },
   async 'a form that another site sends is turned away'() {
     const other = await serve(site), stranger = await context.newPage();

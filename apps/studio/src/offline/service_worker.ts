@@ -15,7 +15,6 @@ const cacheName = ours + version;
 const addressOf = (path: string) => new URL(path, scope).href;
 const known = new Set(Object.keys(builtFiles).map(addressOf));
 const shareTarget = addressOf('share');
-const mostShared = 2 ** 30; // bytes
 /** Shared with the studio by another app, until its page has asked for them. */
 let sharedFiles: File[] = [];
 
@@ -61,8 +60,7 @@ function isOfOtherSite({ referrer, headers }: Request): boolean {
 
 async function takeShared(request: Request): Promise<Response> {
   if (isOfOtherSite(request)) return new Response('', { status: 403 });
-  const files = (await request.formData()).getAll('files').filter((entry): entry is File => entry instanceof File);
-  sharedFiles = files.reduce((sum, { size }) => sum + size, 0) <= mostShared ? files : [];
+  sharedFiles = (await request.formData()).getAll('files').filter((entry): entry is File => entry instanceof File);
   return Response.redirect(addressOf('./?shared'), 303);
 }
 
