@@ -365,6 +365,13 @@ TEST_F(Cli, PreviewShowsClips) {
   expectOneLine(run({"preview", "walk.bvh", "--background", "pink", "-o", "none.png"}), 1);
 }
 
+TEST_F(Cli, PreviewSaysWhatReadingLost) {
+  put("sheet.obj", "mtllib lost.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const Result shown = run({"preview", "sheet.obj", "--size", "40x30", "-o", "sheet.png"});
+  EXPECT_EQ(shown.code, 0);
+  EXPECT_THAT(shown.error, HasSubstr("[missing-materials]"));
+}
+
 // A person out of the practice skeleton's proportions, as a BVH: arms to the sides, walking on the spot.
 std::string personBvh(const std::string& prefix) {
   struct Part {

@@ -194,7 +194,9 @@ void run(PreviewArguments options) {
   progress->stage("write");
   writeFile(options.output, png);
   progress.finish();
-  printWarnings(warnings, options.common.quiet);
+  Warnings all = asset.warnings;
+  all.append(warnings);
+  printWarnings(all, options.common.quiet);
   Account(options.common.quiet, options.output).line(fmt::format("written: {}", options.output));
 }
 

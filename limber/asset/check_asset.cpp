@@ -22,8 +22,9 @@ void checkNodes(const gltf::Document& document) {
     if (node.matrix && (node.translation || node.rotation || node.scale)) {
       failAt(fmt::format("nodes[{}]", i), "has both a matrix and a translation, rotation or scale");
     }
-    if (node.rotation && node.rotation->squaredNorm() < 1e-12)
+    if (node.rotation && node.rotation->squaredNorm() < kLeastSquaredRotation) {
       failAt(place("rotation"), "is zero, which is no rotation");
+    }
   }
 }
 

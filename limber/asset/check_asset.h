@@ -5,6 +5,8 @@
 
 namespace limber {
 
+inline constexpr double kLeastSquaredRotation = 1e-12;  // of a node: a shorter quaternion is no rotation
+
 // Every buffer view, every accessor, and the accessors that meshes and skins use: types, counts, values.
 void checkData(const Asset& asset);
 

@@ -8,6 +8,7 @@
 
 #include "limber/asset/animation_repair.h"
 #include "limber/asset/bvh_read.h"
+#include "limber/asset/check_asset.h"
 #include "limber/asset/codecs.h"
 #include "limber/asset/extensions.h"
 #include "limber/asset/glb.h"
@@ -120,9 +121,8 @@ Asset motionFileAsset(const Motion& motion, std::string_view name, const char* f
 
 // A rotation of length 0 is none, but everything else of such a file can be read.
 void repairRotations(Asset& asset) {
-  constexpr double kMinSquaredLength = 1e-12;  // of a quaternion, as checkAsset has it
   for (gltf::Node& node : asset.document.nodes) {
-    if (!node.rotation || !(node.rotation->squaredNorm() < kMinSquaredLength)) continue;
+    if (!node.rotation || !(node.rotation->squaredNorm() < kLeastSquaredRotation)) continue;
     node.rotation.reset();
     asset.warnings.add("invalid-rotations", "nodes with a rotation of length 0 are not rotated", node.name);
   }
