@@ -10,8 +10,14 @@ std::vector<Index> outerVertices(const FigureSurface& surface) {
   if (surface.innerShell.empty()) return {};
   const TriMesh& mesh = surface.prepared.mesh;
   const Bvh bvh(mesh);
-  std::vector<Index> outer;
-  for (const Index v : surface.innerShell) outer.push_back(nearestCorner(mesh, bvh.nearestPoint(mesh.position(v))));
+  std::vector<bool> isLeftOut(mesh.vertexCount(), false);
+  for (const Index v : surface.innerShell) isLeftOut[v] = true;
+  std::vector<Index> outer = surface.innerShell;
+  for (std::size_t i = 0; i < outer.size(); ++i) {
+    if (i < surface.innerShellOuter.size() && surface.innerShellOuter[i] != kNoIndex)
+      outer[i] = surface.innerShellOuter[i];
+    if (isLeftOut[outer[i]]) outer[i] = nearestCorner(mesh, bvh.nearestPoint(mesh.position(outer[i])));
+  }
   return outer;
 }
 

@@ -8,11 +8,11 @@
 
 namespace limber {
 
-// For each vertex of surface.innerShell the vertex of the surface that is nearest to it.
+// For each vertex of surface.innerShell the vertex of the surface that it is a copy of, else the one nearest to it.
 // Cost: O(#F log #F) where there is an inner shell.
 std::vector<Index> outerVertices(const FigureSurface& surface);
 
-// Has inner shells take the weights of the vertices of the surface that are nearest to them (outerVertices), and
+// Has inner shells take the weights of the vertices of the surface that they are copies of (outerVertices), and
 // surroundings follow joint 0, the root.
 //
 // weights  of surface.prepared.mesh

@@ -26,6 +26,9 @@ TEST(BindLeftOut, ShellsFollowTheSurfaceAndFloorsTheRoot) {
   weights.joints.insert(weights.joints.end(), {5, 5, 5, 5});
   weights.weights.insert(weights.weights.end(), {1, 0, 1, 0});
   EXPECT_EQ(outerVertices(surface), std::vector<Index>{17});
+  surface.innerShellOuter = {3};
+  EXPECT_EQ(outerVertices(surface), std::vector<Index>{3});
+  surface.innerShellOuter = {kNoIndex};
   bindLeftOut(surface, weights);
   for (std::size_t i = 0; i < before.weights.size(); ++i) EXPECT_EQ(weights.weights[i], before.weights[i]);
   const Index inner = surface.innerShell[0], outside = surface.surroundings[0];

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -12,9 +11,9 @@
 
 #include "limber/mesh/areas.h"
 #include "limber/mesh/bvh.h"
-#include "limber/mesh/components.h"
 #include "limber/mesh/face_orientation.h"
 #include "limber/mesh/winding_number.h"
+#include "limber/surface/inner_copies.h"
 
 namespace limber {
 
@@ -45,52 +44,7 @@ constexpr double kMaxShellDistance = 0.03;  // sizes of the outer surface, of a 
 constexpr double kMaxBareDistance = 0.06;   // sizes of the outer surface, from it to a shell below it
 constexpr double kMinCovered = 0.85;        // of the outer surface's area with a shell below it
 
-// A connected component of the surface.
-struct Component {
-  std::span<const Index> vertices, triangles;
-  Box box;
-  double area = 0;
-};
-
-// Numbers 0, 1, ... ordered by the group that each belongs to; the first of group g stands at begin[g].
-struct Grouped {
-  std::vector<Index> members;
-  std::vector<std::size_t> begin;
-
-  Grouped(std::size_t memberCount, Index groupCount, const auto& groupOf)
-      : members(memberCount), begin(groupCount + 2) {
-    for (Index i = 0; i < memberCount; ++i) ++begin[groupOf(i) + 2];
-    std::partial_sum(begin.begin(), begin.end(), begin.begin());
-    for (Index i = 0; i < memberCount; ++i) members[begin[groupOf(i) + 1]++] = i;
-  }
-  std::span<const Index> of(Index group) const {
-    return std::span(members).subspan(begin[group], begin[group + 1] - begin[group]);
-  }
-};
-
-// Those that have triangles, the one of the largest box first.
-struct Components {
-  Grouped vertices, triangles;
-  std::vector<Component> list;
-
-  static Components of(const TriMesh& mesh) {
-    Index count = 0;
-    const std::vector<Index> componentOf = vertexComponents(mesh, &count);
-    Components result{{componentOf.size(), count, [&](Index v) { return componentOf[v]; }},
-                      {mesh.triangles.size(), count, [&](Index t) { return componentOf[mesh.triangles[t][0]]; }},
-                      {}};
-    for (Index c = 0; c < count; ++c) {
-      Component component{result.vertices.of(c), result.triangles.of(c), {}, 0};
-      if (component.triangles.empty()) continue;
-      for (const Index v : component.vertices) component.box.add(mesh.position(v));
-      for (const Index t : component.triangles) component.area += triangleArea(mesh, mesh.triangles[t]);
-      result.list.push_back(component);
-    }
-    std::stable_sort(result.list.begin(), result.list.end(),
-                     [](const Component& a, const Component& b) { return a.box.diagonal() > b.box.diagonal(); });
-    return result;
-  }
-};
+using Component = SurfaceComponent;
 
 TriMesh meshOf(const TriMesh& mesh, const Component& component) {
   TriMesh part{mesh.positions, {}};
@@ -103,22 +57,6 @@ std::vector<Vec3> samplesOf(const TriMesh& mesh, std::span<const Index> vertices
   std::vector<Vec3> samples;
   const std::size_t count = std::min(kSampled, vertices.size());
   for (std::size_t i = 0; i < count; ++i) samples.push_back(mesh.position(vertices[i * vertices.size() / count]));
-  return samples;
-}
-
-struct AreaSample {
-  Vec3 position;
-  double area;
-};
-
-// The middles of evenly chosen triangles of a component.
-std::vector<AreaSample> areaSamplesOf(const TriMesh& mesh, const Component& component) {
-  std::vector<AreaSample> samples;
-  const std::size_t count = std::min(kSampled, component.triangles.size());
-  for (std::size_t i = 0; i < count; ++i) {
-    const Triangle& t = mesh.triangles[component.triangles[i * component.triangles.size() / count]];
-    samples.push_back({(mesh.position(t[0]) + mesh.position(t[1]) + mesh.position(t[2])) / 3, triangleArea(mesh, t)});
-  }
   return samples;
 }
 
@@ -343,6 +281,11 @@ double enclosedShare(const TriMesh& mesh, const Component& component, const Wind
   return area > 0 ? enclosed / area : 0;
 }
 
+struct Shells {
+  std::vector<Component> components, outers;    // outers: those that copies lie within
+  std::vector<std::pair<Index, Index>> copies;  // vertices of a shell with those that they are copies of
+};
+
 // Whether one component is a copy of another one's surface within it. Where the outer one is thin, as in fingers, a
 // copy may come out of it.
 bool isInnerShell(const TriMesh& mesh, const Component& inner, const Component& outer) {
@@ -366,33 +309,59 @@ bool isInnerShell(const TriMesh& mesh, const Component& inner, const Component& 
   return covered >= kMinCovered * outerArea;
 }
 
+// Moves the copies of all components out of them.
+Shells takeInnerCopies(const TriMesh& mesh, std::vector<Component>& components) {
+  Shells shells;
+  const std::vector<Component> all = std::exchange(components, {});
+  std::vector<bool> isInner(all.size(), false);
+  for (const auto& [outer, inner, isVertexByVertex] : innerCopies(mesh, all)) {
+    isInner[inner] = true;
+    shells.components.push_back(all[inner]);
+    shells.outers.push_back(all[outer]);
+    if (!isVertexByVertex) continue;
+    for (std::size_t k = 0; k < all[inner].vertices.size(); ++k) {
+      shells.copies.push_back({all[inner].vertices[k], all[outer].vertices[k]});
+    }
+  }
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!isInner[i]) components.push_back(all[i]);
+  }
+  return shells;
+}
+
 // Moves inner shells out of the components. Where most of the surface has one, what else lies within a part that has
 // one belongs to the shell, too, however little of it is left there.
-std::vector<Component> takeInnerShells(const TriMesh& mesh, std::vector<Component>& components) {
-  std::vector<Component> shells, outers;
-  double all = 0, doubled = 0;
+Shells takeInnerShells(const TriMesh& mesh, std::vector<Component>& components) {
+  Shells shells = takeInnerCopies(mesh, components);
+  const auto copied = static_cast<std::ptrdiff_t>(shells.outers.size());
   for (std::size_t inner = std::min(kMaxShells, components.size()); inner-- > 1;) {
     const auto end = components.begin() + static_cast<std::ptrdiff_t>(inner);
     const auto outer =
         std::find_if(components.begin(), end, [&](const Component& other) { return isInnerShell(mesh, *end, other); });
     if (outer == end) continue;
-    shells.push_back(*end);
-    outers.push_back(*outer);
-    doubled += outer->area;
+    shells.components.push_back(*end);
+    shells.outers.push_back(*outer);
     components.erase(end);
   }
+  double all = 0, doubled = 0;
   for (const Component& component : components) all += component.area;
+  for (const Component& outer : shells.outers) doubled += outer.area;
   if (doubled < kMostOfSurface * all) return shells;
   std::vector<WindingNumber> within;
-  for (const Component& outer : outers) within.emplace_back(meshOf(mesh, outer));
+  for (const Component& outer : shells.outers) within.emplace_back(meshOf(mesh, outer));
+  const auto hasCopy = [&](const Component& component) {
+    return std::any_of(shells.outers.begin(), shells.outers.begin() + copied,
+                       [&](const Component& outer) { return outer.vertices.front() == component.vertices.front(); });
+  };
   const auto isWithinOne = [&](const Component& component) {
-    return component.area < kMaxRest * all && std::any_of(within.begin(), within.end(), [&](const auto& winding) {
+    return component.area < kMaxRest * all && !hasCopy(component) &&
+           std::any_of(within.begin(), within.end(), [&](const WindingNumber& winding) {
              return enclosedShare(mesh, component, winding) >= kMinEnclosed;
            });
   };
   const auto rest = std::stable_partition(components.begin(), components.end(),
                                           [&](const Component& component) { return !isWithinOne(component); });
-  shells.insert(shells.end(), rest, components.end());
+  shells.components.insert(shells.components.end(), rest, components.end());
   components.erase(rest, components.end());
   return shells;
 }
@@ -417,6 +386,23 @@ std::vector<Index> weldedFrom(const std::vector<bool>& isOfSource, const Prepare
   std::sort(vertices.begin(), vertices.end());
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
   return vertices;
+}
+
+// For each vertex of `innerShell` the one that it is a copy of, or kNoIndex.
+//
+// copies  vertices of the mesh that was prepared before, `weldedBefore`
+std::vector<Index> outerOf(std::span<const Index> innerShell, std::span<const std::pair<Index, Index>> copies,
+                           std::span<const Index> weldedBefore, const PreparedMesh& prepared) {
+  std::vector<Index> sourceOf(prepared.mesh.vertexCount(), kNoIndex), outer(prepared.mesh.vertexCount(), kNoIndex);
+  for (Index source = 0; source < weldedBefore.size(); ++source) {
+    if (weldedBefore[source] < sourceOf.size()) sourceOf[weldedBefore[source]] = source;
+  }
+  for (const auto& [from, to] : copies) {
+    outer[prepared.weldedVertex[sourceOf[from]]] = prepared.weldedVertex[sourceOf[to]];
+  }
+  std::vector<Index> result;
+  for (const Index v : innerShell) result.push_back(outer[v]);
+  return result;
 }
 
 // Beyond a figure alone all vertices of a floor would count as far away from it.
@@ -446,18 +432,20 @@ void warnOfFaces(const MendedFaces& mended, Warnings& warnings) {
 
 FigureSurface figureSurface(std::span<const Vec3f> positions, std::span<const Triangle> triangles,
                             std::span<const StoredVertices> stored) {
-  FigureSurface result{prepareMesh(positions, triangles, stored), {}, {}};
+  FigureSurface result{prepareMesh(positions, triangles, stored), {}, {}, {}};
   PreparedMesh& prepared = result.prepared;
   const MendedFaces mended = mendFaces(prepared.mesh);
-  Components components = Components::of(prepared.mesh);
+  SurfaceComponents components = SurfaceComponents::of(prepared.mesh);
   std::vector<bool> isInner, isAround;
+  std::vector<std::pair<Index, Index>> copies;
   bool isAlone = true;
   if (components.list.size() > 1) {
-    const std::vector<Component> shells = takeInnerShells(prepared.mesh, components.list);
+    Shells shells = takeInnerShells(prepared.mesh, components.list);
     const std::vector<Component> surroundings = surroundingsAmong(prepared.mesh, components.list);
-    isInner = sourceVerticesOf(prepared, shells);
+    isInner = sourceVerticesOf(prepared, shells.components);
     isAround = sourceVerticesOf(prepared, surroundings);
-    isAlone = shells.empty() && surroundings.empty();
+    isAlone = shells.components.empty() && surroundings.empty();
+    copies = std::move(shells.copies);
   }
   if (isAlone) {
     warnOfFaces(mended, prepared.warnings);
@@ -474,10 +462,11 @@ FigureSurface figureSurface(std::span<const Vec3f> positions, std::span<const Tr
       figure.push_back(t);
     }
   }
-  const Warnings before = std::exchange(prepared, prepareMesh(positions, figure, stored)).warnings;
-  prepared.warnings = withFarVerticesOf(before, prepared.warnings);
+  const PreparedMesh before = std::exchange(prepared, prepareMesh(positions, figure, stored));
+  prepared.warnings = withFarVerticesOf(before.warnings, prepared.warnings);
   warnOfFaces(mendFaces(prepared.mesh), prepared.warnings);
   result.innerShell = weldedFrom(isInner, prepared);
+  result.innerShellOuter = outerOf(result.innerShell, copies, before.weldedVertex, prepared);
   result.surroundings = weldedFrom(isAround, prepared);
   prepared.warnings.add("surroundings",
                         "triangles of floors, walls, pedestals or boxes round the figure are no part of it; they "

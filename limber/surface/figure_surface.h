@@ -9,9 +9,10 @@
 namespace limber {
 
 struct FigureSurface {
-  PreparedMesh prepared;            // without the triangles of what follows, whose vertices are loose in it
-  std::vector<Index> innerShell;    // vertices of prepared.mesh, ascending
-  std::vector<Index> surroundings;  // vertices of prepared.mesh, ascending
+  PreparedMesh prepared;               // without the triangles of what follows, whose vertices are loose in it
+  std::vector<Index> innerShell;       // vertices of prepared.mesh, ascending
+  std::vector<Index> innerShellOuter;  // for each the vertex that it is a copy of, or kNoIndex
+  std::vector<Index> surroundings;     // vertices of prepared.mesh, ascending
 };
 
 // prepareMesh, with each face once, faces that agree about the outside (mendFaces), and without
@@ -20,8 +21,9 @@ struct FigureSurface {
 //   it (collider boxes), and flat or convex ones that it stands on with feet (the steps of a pedestal; +Y up). What
 //   they are in the model of has to be a figure: thick along a floor's normal, and hollow, so that it fills less than
 //   half of its box;
-// - inner shells: components of which most lies within another one and which are, almost everywhere near its surface, a
-//   copy of it; where most of the figure has one, also small components within what has one.
+// - inner shells: copies of all components a little within them (innerCopies); and components of which most lies within
+//   another one and which are, almost everywhere near its surface, a copy of it; where most of the figure has one, also
+//   small components within what has one.
 // The model's size, and so PreparedMesh::frame, is that of the figure.
 //
 // prepared.warnings has the kinds repeated-faces, reversed-faces, inner-shell and surroundings, too, which count

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "limber/surface/testing/dressed_figure.h"
 #include "limber/surface/testing/shape_meshes.h"
 
 namespace limber {
@@ -174,6 +175,18 @@ TEST(FigureSurface, RoughCopiesOfManyPartsAreLeftOut) {
   const FigureSurface surface = surfaceOf(testing::joined(whole, testing::joined(copy, within)));
   EXPECT_EQ(surface.innerShell.size(), copy.positions.size() + within.positions.size());
   expectBodyAlone(surface, whole);
+}
+
+TEST(FigureSurface, CopiesOfOpenPartsAreLeftOut) {
+  const TriMesh figure = testing::openFigure();
+  const FigureSurface surface = surfaceOf(testing::joined(figure, testing::movedInwards(figure, 0.1f)));
+  EXPECT_EQ(countOf(surface, "inner-shell"), figure.triangles.size());
+  ASSERT_EQ(surface.innerShell.size(), figure.positions.size());
+  ASSERT_EQ(surface.innerShellOuter.size(), surface.innerShell.size());
+  for (Index i = 0; i < surface.innerShell.size(); ++i) {
+    EXPECT_EQ(surface.innerShell[i], surface.innerShellOuter[i] + figure.vertexCount());
+  }
+  expectBodyAlone(surface, figure);
 }
 
 TEST(FigureSurface, WhatIsWithinAModelAndNoCopyStays) {
