@@ -21,7 +21,7 @@ namespace {
 constexpr double kNoise = 0x1p-20;          // of the longest side: a few roundings in single precision
 constexpr double kFloatRounding = 0x1p-22;  // of the largest coordinate: one rounding of three, and some to spare
 constexpr double kRoundedEdge = 1.0 / 16;   // of the median edge: what joins by rounding is far below any detail
-constexpr double kGridEdge = 0.5;           // of the median edge: what joins across grids is below it
+constexpr double kGridEdge = 1;             // of the median edge: what joins across grids is below it
 constexpr std::size_t kEdgeSamples = 1 << 16;
 
 std::uint64_t mixed(std::uint64_t hash, std::uint64_t value) {
@@ -203,10 +203,39 @@ class Welder {
     }
   }
 
-  // Pairs of vertices on open edges of different ranges, of which one has a grid at least, each the nearest of the
-  // other, within what the grids explain.
-  // By distance, the lower vertex first in each.
-  std::vector<Match> mutualMatches(const std::vector<Index>& openVertices) const {
+  // Those of one triangle as the file has them, if no other lies at the same position. Two that do and have a vertex in
+  // common are open as well: a grid has closed the notch between them.
+  std::vector<Pair> openEdges() const {
+    std::vector<Triangle> triangles;
+    std::copy_if(triangles_.begin(), triangles_.end(), std::back_inserter(triangles),
+                 [](const Triangle& t) { return t[0] != t[1] && t[1] != t[2] && t[2] != t[0]; });
+    const EdgeGroups groups(triangles, static_cast<Index>(positions_.size()));
+    std::vector<std::pair<Pair, Pair>> edges;  // its points and its vertices
+    groups.forEachEdge([&](std::span<const Index> sides) {
+      const Index low = groups.low(sides[0]), high = groups.high(sides[0]);
+      if (sides.size() > 1 || same_[low] == same_[high]) return;
+      edges.push_back({std::minmax(same_[low], same_[high]), {low, high}});
+    });
+    std::sort(edges.begin(), edges.end());
+    std::vector<Pair> result;
+    std::vector<Index> vertices;
+    for (std::size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
+      vertices.clear();
+      for (; end < edges.size() && edges[end].first == edges[begin].first; ++end) {
+        vertices.insert(vertices.end(), {edges[end].second.first, edges[end].second.second});
+      }
+      std::sort(vertices.begin(), vertices.end());
+      const bool isNotch = std::adjacent_find(vertices.begin(), vertices.end()) != vertices.end();
+      if (end == begin + 1 || isNotch) result.push_back(edges[begin].first);
+    }
+    return result;
+  }
+
+  // Of each vertex on an open edge and each other range, one of the two with a grid: the range's nearest vertex on an
+  // open edge, within what the grids explain. By both.
+  std::map<Pair, Match> nearestAcross(const std::vector<Pair>& openEdges) const {
+    std::set<Index> openVertices;
+    for (const auto& [a, b] : openEdges) openVertices.insert({a, b});
     const auto gridOf = [&](Index v) { return ranges_[rangeOf_[v]].quantisation; };
     const auto capOf = [&](Index v) { return kGridEdge * medianEdge_[rangeOf_[v]]; };
     double most = 0;
@@ -214,7 +243,7 @@ class Welder {
     const auto reachOf = [&](Index v) { return std::min(gridOf(v) + rounding(v) + most, capOf(v)); };
     PointCells cells(positions_, openVertices.size());
     for (const Index v : openVertices) cells.add(v, reachOf(v));
-    std::map<Pair, Match> nearest;  // by vertex and the other range
+    std::map<Pair, Match> nearest;
     for (const Index a : openVertices) {
       cells.forNear(positions_[a], reachOf(a), [&](Index b) {
         if (rangeOf_[a] == rangeOf_[b] || !(gridOf(a) + gridOf(b) > 0)) return;
@@ -225,14 +254,7 @@ class Welder {
         if (!isNew && match.order() < found->second.order()) found->second = match;
       });
     }
-    std::vector<Match> result;
-    for (const auto& [key, match] : nearest) {
-      if (match.a > match.b) continue;
-      const auto back = nearest.find({match.b, rangeOf_[match.a]});
-      if (back != nearest.end() && back->second.b == match.a) result.push_back(match);
-    }
-    std::sort(result.begin(), result.end(), [](const Match& x, const Match& y) { return x.order() < y.order(); });
-    return result;
+    return nearest;
   }
 
   // How many points two ranges have in common.
@@ -247,71 +269,63 @@ class Welder {
   }
 
   void joinSeams() {
-    const std::vector<Triangle> triangles = weldedTriangles();
-    const EdgeGroups groups(triangles, static_cast<Index>(positions_.size()));
-    std::vector<Pair> openEdges;
-    groups.forEachEdge([&](std::span<const Index> sides) {
-      if (sides.size() == 1) openEdges.push_back({groups.low(sides[0]), groups.high(sides[0])});
-    });
-    std::vector<Index> openVertices;
-    for (const auto& [a, b] : openEdges) openVertices.insert(openVertices.end(), {a, b});
-    std::sort(openVertices.begin(), openVertices.end());
-    openVertices.erase(std::unique(openVertices.begin(), openVertices.end()), openVertices.end());
-
-    const std::vector<Match> matches = mutualMatches(openVertices);
-    if (matches.empty()) return;
-    std::map<Pair, std::size_t> matched, met = meetings();
-    for (const Match& match : matches) ++matched[std::minmax(rangeOf_[match.a], rangeOf_[match.b])];
-    const std::set<Pair> alongSeams = matchesAlongSeams(matches, openEdges);
-    std::map<Index, std::vector<Index>> members;  // of each point that is matched, by its lowest vertex
-    for (const Match& match : matches) {
-      for (const Index v : {match.a, match.b}) members[same_[v]];
+    const std::vector<Pair> openEdges = this->openEdges();
+    const std::map<Pair, Match> nearest = nearestAcross(openEdges);
+    if (nearest.empty()) return;
+    std::map<Pair, std::size_t> mutual, met = meetings();
+    std::set<Pair> matches;  // either way round
+    for (const auto& [key, match] : nearest) {
+      const auto back = nearest.find({match.b, rangeOf_[match.a]});
+      const bool isMutual = back != nearest.end() && back->second.b == match.a;
+      if (isMutual && match.a < match.b) ++mutual[std::minmax(rangeOf_[match.a], rangeOf_[match.b])];
+      matches.insert({{match.a, match.b}, {match.b, match.a}});
     }
-    for (Index v = 0; v < positions_.size(); ++v) {
-      if (const auto point = members.find(same_[v]); point != members.end()) point->second.push_back(v);
-    }
-    for (const Match& match : matches) {
-      const Pair ranges = std::minmax(rangeOf_[match.a], rangeOf_[match.b]);
-      if (alongSeams.count({match.a, match.b}) > 0 && met[ranges] < matched[ranges]) join(match, members);
+    for (const auto& [a, b] : matchesAlongSeams(matches, openEdges)) {
+      const Pair ranges = std::minmax(rangeOf_[a], rangeOf_[b]);
+      if (met[ranges] < mutual[ranges]) join(a, b);
     }
     for (Index& v : same_) v = same_[v];
   }
 
-  // Those with an open edge to another match's vertices, or to one vertex that both sides have already.
-  static std::set<Pair> matchesAlongSeams(const std::vector<Match>& matches, const std::vector<Pair>& openEdges) {
+  // Those with an open edge to another match's vertices, or to one vertex that both sides have already; and on from
+  // these those with an open edge on one side and the same vertex on the other.
+  static std::set<Pair> matchesAlongSeams(const std::set<Pair>& matches, const std::vector<Pair>& openEdges) {
     std::map<Index, std::vector<Index>> beside;
     for (const auto& [a, b] : openEdges) {
       beside[a].push_back(b);
       beside[b].push_back(a);
     }
-    std::set<Pair> pairs, result;
-    for (const Match& match : matches) pairs.insert({match.a, match.b});
-    for (const Match& match : matches) {
-      for (const Index a : beside[match.a]) {
-        for (const Index b : beside[match.b]) {
-          const Pair pair = std::minmax(a, b);
-          const bool isItself = pair == Pair(match.a, match.b);
-          if (a == b || (!isItself && pairs.count(pair) > 0)) result.insert({match.a, match.b});
+    std::set<Pair> result;
+    std::vector<Pair> front;
+    const auto add = [&](const Pair& match) {
+      if (result.insert(match).second) front.push_back(match);
+    };
+    for (const auto& [a, b] : matches) {
+      for (const Index c : beside[a]) {
+        for (const Index d : beside[b]) {
+          const bool isItself = c == b && d == a;
+          if (c == d || (!isItself && matches.count({c, d}) > 0)) add({a, b});
         }
+      }
+    }
+    while (!front.empty()) {
+      const auto [a, b] = front.back();
+      front.pop_back();
+      add({b, a});
+      for (const Index c : beside[a]) {
+        if (matches.count({c, b}) > 0) add({c, b});
       }
     }
     return result;
   }
 
-  // Unless that would make one point of two that belong to one range.
-  void join(const Match& match, std::map<Index, std::vector<Index>>& members) {
-    const Index low = std::min(same_[match.a], same_[match.b]), high = std::max(same_[match.a], same_[match.b]);
-    if (low == high) return;
-    std::vector<Index>& kept = members.at(low);
-    const std::vector<Index>& added = members.at(high);
-    for (const Index a : kept) {
-      for (const Index b : added) {
-        if (rangeOf_[a] == rangeOf_[b]) return;
-      }
-    }
-    for (const Index v : added) same_[v] = low;
-    kept.insert(kept.end(), added.begin(), added.end());
-    members.erase(high);
+  Index pointOf(Index v) {
+    for (; same_[v] != v; v = same_[v]) same_[v] = same_[same_[v]];
+    return v;
+  }
+  void join(Index a, Index b) {
+    const auto [low, high] = std::minmax({pointOf(a), pointOf(b)});
+    same_[high] = low;
   }
 
   std::span<const Vec3f> positions_;

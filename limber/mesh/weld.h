@@ -22,10 +22,11 @@ struct StoredVertices {
 // is and seen from the origin of its range; at most 1/16 of the median edge of either range. A vertex joins the nearest
 // representative before it, so that a chain of near vertices does not become one.
 //
-// A grid is much coarser than that. Vertices of one range lie on one grid and stay apart. Those of two ranges of
-// which one has a grid at least join where open edges meet along a seam: both ends of an edge with one triangle have
-// their nearest counterpart in the other range, and are its nearest, no farther away than the `quantisation` of both
-// explains, at most half the median edge. Two ranges that meet at as many points without this share a grid and stay as
+// A grid is much coarser than that. Vertices of one range lie on one grid. Those of two ranges of which one has a grid
+// at least join where open edges meet along a seam: each joins the nearest of the other range, no farther away than the
+// `quantisation` of both explains, at most the median edge. So two of one range become one where a coarser grid has
+// made one of their counterparts. A match counts if an open edge leads from both ends to another match, or from one end
+// to a match of the other that counts. Two ranges that meet at as many points without this share a grid and stay as
 // they are.
 //
 // positions  #V, finite

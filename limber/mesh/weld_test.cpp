@@ -1,6 +1,7 @@
 #include "limber/mesh/weld.h"
 
 #include <cmath>
+#include <map>
 #include <random>
 #include <set>
 
@@ -203,22 +204,106 @@ TEST(SamePoints, MeshesOnOneGridJoinWhereTheyAreEqualAlone) {
   EXPECT_EQ(parts.pointCount(), parts.positions.size() - 7);
 }
 
-TEST(SamePoints, NeverMakeOnePointOfTwoOfOneGrid) {
-  TriMesh fine = tube(0.1, 0, 0.5, 20, 200), coarse = tube(0.1, 0.5, 1, 20, 200);
-  const double fineGrid = quantise(14, fine), coarseGrid = quantise(8, coarse);
-  Parts parts;
-  parts.add(fine, fineGrid);
-  parts.add(coarse, coarseGrid);
-  const std::vector<Index> same = samePoints(parts.positions, parts.triangles, parts.stored);
-  const auto first = static_cast<Index>(fine.positions.size());
-  for (Index v = 0; v < first; ++v) EXPECT_EQ(same[v], v);
-  for (Index v = first; v < same.size(); ++v) {
-    if (same[v] >= first) continue;
-    for (Index w = first; w < v; ++w) {
-      if (same[w] == same[v]) {
-        EXPECT_EQ(parts.positions[w], parts.positions[v]);
+// A tube in two parts with what vertex of it each of theirs is. A jagged cut leaves teeth of one triangle each.
+struct CutTube {
+  TriMesh parts[2];
+  std::vector<Index> vertexOf[2];
+};
+
+CutTube cutTube(Index around, bool isJagged) {
+  const TriMesh whole = tube(0.1, 0, 1, 20, around);
+  CutTube cut;
+  std::vector<Index> moved[2] = {std::vector<Index>(whole.positions.size(), kNoIndex),
+                                 std::vector<Index>(whole.positions.size(), kNoIndex)};
+  for (Index t = 0; t < whole.triangles.size(); ++t) {
+    const Index ring = t / (2 * around);
+    const std::size_t side = ring > 9 || (ring == 9 && isJagged && t % 2 == 1) ? 1 : 0;
+    Triangle own;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Index v = whole.triangles[t][i];
+      if (moved[side][v] == kNoIndex) {
+        moved[side][v] = cut.parts[side].vertexCount();
+        cut.parts[side].positions.push_back(whole.positions[v]);
+        cut.vertexOf[side].push_back(v);
       }
+      own[i] = moved[side][v];
     }
+    cut.parts[side].triangles.push_back(own);
+  }
+  return cut;
+}
+
+TEST(SamePoints, SeamsOfMeshesFinerThanAGridAreClosed) {
+  for (const bool isJagged : {false, true}) {
+    for (const Index around : {100u, 200u, 280u}) {  // edges of 6 to 2 mm on steps of 2 mm
+      CutTube cut = cutTube(around, isJagged);
+      Parts parts;
+      for (std::size_t side = 0; side < 2; ++side) {
+        const double grid = quantise(side == 0 ? 14 : 8, cut.parts[side], {0.3, 0.4, 0.2});
+        parts.add(cut.parts[side], grid);
+      }
+      const std::vector<Index> same = samePoints(parts.positions, parts.triangles, parts.stored);
+      std::map<Index, Index> lowOf;
+      for (Index v = 0; v < cut.vertexOf[0].size(); ++v) lowOf[cut.vertexOf[0][v]] = v;
+      std::size_t seam = 0, torn = 0;
+      for (Index v = 0; v < cut.vertexOf[1].size(); ++v) {
+        const auto low = lowOf.find(cut.vertexOf[1][v]);
+        if (low == lowOf.end()) continue;
+        ++seam;
+        if (same[low->second] != same[parts.stored[1].first + v]) ++torn;
+      }
+      EXPECT_EQ(seam, isJagged ? 2 * around : around);
+      EXPECT_EQ(torn, 0) << around << (isJagged ? " jagged" : "");
+    }
+  }
+}
+
+TEST(SamePoints, OfOneGridBecomeOneOnlyWhereACoarserGridHasMadeOneOfTheirCounterparts) {
+  CutTube cut = cutTube(400, false);
+  Parts parts;
+  parts.add(cut.parts[0], quantise(14, cut.parts[0]));
+  parts.add(cut.parts[1], quantise(8, cut.parts[1]));
+  const std::vector<Index> same = samePoints(parts.positions, parts.triangles, parts.stored);
+  const Index last = parts.stored[0].count - 400;
+  for (Index v = 0; v < last; ++v) EXPECT_EQ(same[v], v);
+  for (Index v = last; v < last + 400; ++v) {
+    const double apart = (parts.positions[v] - parts.positions[same[v]]).norm();
+    EXPECT_LT(apart, 2 * (parts.stored[0].quantisation + parts.stored[1].quantisation));
+  }
+}
+
+// A face with a mouth, and the bag within it on a finer grid. The lips are 2 steps of the coarser grid apart.
+TEST(SamePoints, LipsStayApartThoughTheirSeamsAreClosed) {
+  const Index half = 12;
+  const auto ring = [&](double scale, double gap, double z) {
+    Points points;
+    for (Index i = 0; i < 2 * half; ++i) {
+      const double angle = kPi * (i + 0.5) / half;
+      const double x = 0.025 * std::cos(angle), y = 0.5 * gap * (i < half ? 1 : -1);
+      points.push_back(Vec3(x * scale + 0.001, y * scale + 0.3 * x, z).cast<float>());
+    }
+    return points;
+  };
+  const auto band = [&](const Points& inner, const Points& outer) {
+    TriMesh mesh;
+    mesh.positions = inner;
+    mesh.positions.insert(mesh.positions.end(), outer.begin(), outer.end());
+    for (Index i = 0; i < 2 * half; ++i) {
+      const Index j = (i + 1) % (2 * half);
+      mesh.triangles.push_back({i, j, i + 2 * half});
+      mesh.triangles.push_back({j, j + 2 * half, i + 2 * half});
+    }
+    return mesh;
+  };
+  const double gap = 2 * 0.25 / 255;
+  TriMesh face = band(ring(1, gap, 0), ring(5, 10 * gap, 0)), bag = band(ring(1, gap, 0), ring(1, 3 * gap, -0.02));
+  Parts parts;
+  parts.add(face, quantise(8, face));
+  parts.add(bag, quantise(8, bag, {0.3, 0.4, 0.2}));
+  const std::vector<Index> same = samePoints(parts.positions, parts.triangles, parts.stored);
+  for (Index i = 0; i < 2 * half; ++i) {
+    EXPECT_EQ(same[parts.stored[1].first + i], same[i]) << i;
+    EXPECT_NE(same[i], same[2 * half - 1 - i]) << i;
   }
 }
 
