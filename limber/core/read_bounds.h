@@ -26,8 +26,9 @@ inline constexpr std::uint64_t kMega = 1 << 20;
 inline constexpr ReadBound kVertexData = {192 * kMega, 8};
 // What Draco unpacks to.
 inline constexpr ReadBound kDraco = {32 * kMega, 64};
-// What meshopt unpacks to, the larger of the two. Its own bytes are some two to six times fewer; zeros would give 64.
-inline constexpr ReadBound kMeshopt = {32 * kMega, 8};
+// What meshopt unpacks to, the larger of the two. Smooth meshes of millions of vertices reach 8, an index of 12 bytes
+// takes one at least; zeros would give 64.
+inline constexpr ReadBound kMeshopt = {32 * kMega, 12};
 // Files of an archive. NumPy's arrays and texts of models are packed some ten times.
 inline constexpr ReadBound kArchive = {64 * kMega, 32};
 // Arrays of an FBX file. Blender's densest files stay below 20; deflate itself would allow 1032.
