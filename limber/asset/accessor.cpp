@@ -133,18 +133,24 @@ void setBounds(Asset& asset, Index index) {
   accessor.max.clear();
   if (layout.info.count == 0) return;
 
-  std::vector<double> values(std::size_t{layout.info.count} * components);
+  std::vector<double> low, high, values(components);
+  bool isFinite = true;
   withComponentType(layout.info.type, [&](auto component) {
     using T = decltype(component);
-    readElements<T>(
-        layout, [](T value) { return static_cast<double>(value); }, values);
+    forEachElement(layout, [&](const std::uint8_t* at) {
+      std::fill(values.begin(), values.end(), 0.0);
+      if (at != nullptr)
+        readElement<T>(
+            layout, at, [](T value) { return static_cast<double>(value); }, values.data());
+      if (low.empty()) low = high = values;
+      for (std::size_t c = 0; c < components; ++c) {
+        isFinite = isFinite && std::isfinite(values[c]);
+        low[c] = std::min(low[c], values[c]);
+        high[c] = std::max(high[c], values[c]);
+      }
+    });
   });
-  std::vector<double> low(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(components)), high = low;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (!std::isfinite(values[i])) return;  // JSON has no word for it
-    low[i % components] = std::min(low[i % components], values[i]);
-    high[i % components] = std::max(high[i % components], values[i]);
-  }
+  if (!isFinite) return;  // JSON has no word for it
   accessor.min = std::move(low);
   accessor.max = std::move(high);
 }

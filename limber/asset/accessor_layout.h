@@ -86,6 +86,19 @@ void readElement(const AccessorLayout& layout, const std::uint8_t* at, const Con
   }
 }
 
+// Calls use(at) for each element in its order: where its bytes lie, null for zeros.
+template <typename Use>
+void forEachElement(const AccessorLayout& layout, const Use& use) {
+  std::size_t next = 0;  // substitution; they are in rising order
+  for (std::size_t i = 0; i < layout.info.count; ++i) {
+    if (layout.sparse && next < layout.sparse->count && layout.sparse->index(next) == i) {
+      use(layout.sparse->values + next++ * layout.elementSize);
+    } else {
+      use(layout.data == nullptr ? nullptr : layout.data + i * layout.stride);
+    }
+  }
+}
+
 // All components, converted, into `out`, which holds count * components zeros: data, then sparse substitutions. Where
 // nothing is to convert and data are tightly packed this is one copy.
 template <typename T, typename Convert, typename Out>

@@ -80,9 +80,11 @@ void takePlainData(Asset& asset, Decoded& decoded) {
 }
 
 void decode(Asset& asset, const Found& found, Decoded& decoded) {
-  DecodeBudget budget(asset);
-  if (found.views > 0) decodeMeshopt(asset, budget, decoded);
-  if (found.primitives > 0) decodeDraco(asset, budget, decoded);
+  std::uint64_t stored = 0;
+  for (const Asset::Buffer& buffer : asset.buffers) stored += buffer.bytes.size();
+  DecodeBudget meshopt(read_bounds::kMeshopt.larger(stored)), draco(read_bounds::kDraco.of(stored));
+  if (found.views > 0) decodeMeshopt(asset, meshopt, decoded);
+  if (found.primitives > 0) decodeDraco(asset, draco, decoded);
   for (const Index index : decoded.accessors) {
     // Decoded values are near those from which the encoder took its bounds, not always equal to them.
     const gltf::Accessor& accessor = asset.document.accessors[index];
@@ -100,15 +102,10 @@ void dropDeclarations(gltf::Document& document) {
 
 }  // namespace
 
-DecodeBudget::DecodeBudget(const Asset& asset) {
-  std::size_t stored = 0;
-  for (const Asset::Buffer& buffer : asset.buffers) stored += buffer.bytes.size();
-  left_ = static_cast<std::size_t>(read_bounds::kDecoded.of(stored));
-}
-
 void DecodeBudget::take(std::size_t bytes, const std::string& where) {
   if (bytes > left_) {
-    throw Error(ErrorCode::kLimit, "decompresses to more than a file of this size may hold", where);
+    throw Error(ErrorCode::kLimit, "decompresses to more than a file of this size may hold", where,
+                "export the model without compression");
   }
   left_ -= bytes;
 }

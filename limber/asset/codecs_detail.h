@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <set>
 #include <string>
 
@@ -12,11 +13,11 @@ namespace limber {
 inline constexpr const char* kDraco = "KHR_draco_mesh_compression";
 inline constexpr const char* kMeshopt[] = {"EXT_meshopt_compression", "KHR_meshopt_compression"};
 
-// Memory that decoding may still ask for. Real files grow ten to fifty times; what a small file can claim is held to
-// a multiple of its size.
+// Memory that decoding may still ask for. Draco's files grow ten to fifty times; what a small file can claim is held to
+// a multiple of its size (read_bounds.h).
 class DecodeBudget {
  public:
-  explicit DecodeBudget(const Asset& asset);
+  explicit DecodeBudget(std::uint64_t bytes) : left_(static_cast<std::size_t>(bytes)) {}
   std::size_t left() const { return left_; }
   void take(std::size_t bytes, const std::string& where);  // throws Error kLimit
 

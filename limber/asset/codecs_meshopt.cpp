@@ -87,18 +87,21 @@ std::vector<EncodedView> findEncoded(const Asset& asset) {
 // the file are a claim about memory.
 void decodeMeshopt(Asset& asset, DecodeBudget& budget, Decoded& decoded) {
   const std::vector<EncodedView> views = findEncoded(asset);
-  std::vector<Bytes> filled(asset.buffers.size());
-  std::vector<std::size_t> offsets;
+  std::vector<std::size_t> sizes(asset.buffers.size(), 0), offsets;
   for (const EncodedView& encoded : views) {
-    const std::string where = fmt::format("bufferViews[{}]", encoded.view);
-    Bytes& out = filled[encoded.target];
-    const std::size_t offset = (out.size() + 3) / 4 * 4, size = encoded.data.count * encoded.data.stride;
-    budget.take(size, where);
-    out.resize(offset + size);
-    if (size > 0 && !decodeMeshoptData(encoded.data, out.data() + offset)) {
-      throw Error(ErrorCode::kBadData, "its meshopt compressed data are broken", where);
+    std::size_t& end = sizes[encoded.target];
+    const std::size_t size = encoded.data.count * encoded.data.stride;
+    budget.take(size, fmt::format("bufferViews[{}]", encoded.view));
+    offsets.push_back((end + 3) / 4 * 4);
+    end = offsets.back() + size;
+  }
+  std::vector<Bytes> filled(sizes.begin(), sizes.end());
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const EncodedView& encoded = views[i];
+    if (encoded.data.count > 0 && !decodeMeshoptData(encoded.data, filled[encoded.target].data() + offsets[i])) {
+      throw Error(ErrorCode::kBadData, "its meshopt compressed data are broken",
+                  fmt::format("bufferViews[{}]", encoded.view));
     }
-    offsets.push_back(offset);
     decoded.buffers.insert(encoded.source);
   }
 

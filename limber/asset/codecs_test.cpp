@@ -229,12 +229,27 @@ TEST(Meshopt, BrokenDataAreErrors) {
   }
 }
 
-TEST(DecodeBudget, GrowsWithTheFile) {
-  Asset asset;
-  asset.buffers.push_back({Bytes(1000), ""});
-  asset.buffers.push_back({Bytes(500), ""});
-  const std::size_t size = (std::size_t{32} << 20) + 64 * 1500;
-  DecodeBudget budget(asset);
+TEST(Meshopt, UnpacksToABoundOfItsFile) {
+  const Bytes data = encodeVertices(ramp(300), 12);
+  // Views of so many bytes each that say more than their data; broken ones are those that are decoded.
+  const auto codeOf = [&](std::size_t views, std::size_t bytes) {
+    MeshoptModel file;
+    for (std::size_t i = 0; i < views; ++i) file.addView(data, bytes / 4, 4, "ATTRIBUTES");
+    try {
+      readAsset(file.glb(), "m.glb");
+    } catch (const Error& error) {
+      return error.code();
+    }
+    return ErrorCode::kCancelled;
+  };
+  EXPECT_EQ(codeOf(1, 32 << 20), ErrorCode::kBadData);
+  EXPECT_EQ(codeOf(1, (32 << 20) + 4), ErrorCode::kLimit);
+  EXPECT_EQ(codeOf(5, 7 << 20), ErrorCode::kLimit);
+}
+
+TEST(DecodeBudget, ThrowsWhenItIsSpent) {
+  const std::size_t size = 1500;
+  DecodeBudget budget(size);
   EXPECT_EQ(budget.left(), size);
   budget.take(size, "m");
   EXPECT_THROW(budget.take(1, "m"), Error);

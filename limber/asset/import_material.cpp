@@ -8,7 +8,9 @@
 #include <assimp/scene.h>
 
 #include "limber/asset/embedded_texture.h"
+#include "limber/asset/import_sandbox.h"
 #include "limber/asset/import_text.h"
+#include "limber/core/read_bounds.h"
 
 namespace limber {
 
@@ -97,7 +99,12 @@ std::optional<Bytes> MaterialImporter::imageBytes(const std::string& path) {
     if (embedded->mHeight == 0) return Bytes(data, data + embedded->mWidth);  // a whole image file
     return Bytes();                                                           // bare pixels: told as unsupported
   }
-  return io_.sideFile(path);
+  std::optional<Bytes> picture = io_.sideFile(path);
+  // A file under many names counts once.
+  if (picture && pictureSizes_.insert(picture->size()).second) {
+    allowMemory(static_cast<std::size_t>(read_bounds::kAssimpPicture * picture->size()));
+  }
+  return picture;
 }
 
 }  // namespace limber

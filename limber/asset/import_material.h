@@ -3,6 +3,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "limber/asset/asset.h"
@@ -34,6 +35,7 @@ class MaterialImporter {
   const ImportIo& io_;
   std::map<unsigned, Index> materials_;
   std::map<std::string, std::optional<Index>> textures_;
+  std::set<std::size_t> pictureSizes_;  // of the files that were read
 };
 
 }  // namespace limber

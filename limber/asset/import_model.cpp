@@ -145,7 +145,8 @@ ByteSpan checkedStl(ByteSpan bytes) {
 // Assimp's own message, without what is said around it already, and with the file's own name.
 Error importError(std::string message, const std::string& mainName, std::string_view name) {
   if (message.find("bad_alloc") != std::string::npos) {
-    return Error(ErrorCode::kLimit, "it asks for more memory than a file of its size may");
+    return Error(ErrorCode::kLimit, "it asks for more memory than a file of its size may", {},
+                 "convert it to GLB, or split it");
   }
   if (const std::size_t at = message.find(mainName); at != std::string::npos) {
     message.replace(at, mainName.size(), name);
@@ -272,6 +273,10 @@ void warnOfPrepared(Asset& asset, const Prepared& file, const ImportIo& io) {
   asset.warnings.add("trailing-bytes", "bytes behind the last triangle are left out", {}, file.trailing);
 }
 
+std::uint64_t importedMeshes(std::size_t size) {
+  return read_bounds::kImportedMeshes.of(size / read_bounds::kBytesImportedMesh);
+}
+
 Asset readWithAssimp(ByteSpan bytes, std::string_view name, const Format& format, const Resolver& resolver,
                      ObjNumbers numbers) {
   const Prepared file = prepare(bytes, format.extension);
@@ -283,6 +288,13 @@ Asset readWithAssimp(ByteSpan bytes, std::string_view name, const Format& format
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);  // no made-up mesh where there is only motion
   const aiScene* scene = importer.ReadFile(mainName, aiProcess_Triangulate);
   if (!scene || !scene->mRootNode) throw importError(importer.GetErrorString(), mainName, name);
+
+  if (scene->mNumMeshes > importedMeshes(bytes.size())) {
+    throw Error(ErrorCode::kLimit,
+                fmt::format("it has {} meshes, and a file of its size may have {}", scene->mNumMeshes,
+                            importedMeshes(bytes.size())),
+                {}, "join its meshes, or convert it to GLB");
+  }
 
   auto& edited = const_cast<aiScene&>(*scene);  // the importer owns it and is done with it
   if (format.extension == std::string_view("stl")) dropNormals(edited);
@@ -306,11 +318,12 @@ Asset readWithAssimp(ByteSpan bytes, std::string_view name, const Format& format
 }
 
 // The document and its warnings in one message: a length in eight bytes, the warnings as JSON, the GLB.
-Bytes pack(const Asset& asset) {
+Bytes pack(Asset asset) {
   Json warnings = Json::array();
   for (const Warning& w : asset.warnings.items()) warnings.push_back({w.kind, w.message, w.where, w.count});
   const std::string text = warnings.dump(-1, ' ', false, Json::error_handler_t::replace);
   const Bytes glb = writeGlb(asset);
+  asset = Asset();  // before there is a third copy
   const std::uint64_t length = text.size();
   Bytes message(sizeof length + text.size() + glb.size());
   std::memcpy(message.data(), &length, sizeof length);
@@ -337,12 +350,13 @@ Asset unpack(ByteSpan message) {
   return asset;
 }
 
-// A text file of a megabyte takes Assimp about a tenth of a second and 20 megabytes; hostile ones get twenty
-// times that time and twice the memory, and what a small file with its pictures takes.
+// A text file of a megabyte takes Assimp about a tenth of a second; hostile ones get twenty times that, and six
+// seconds at most until 16 megabytes. Large scenes of tens of thousands of objects take it a second for each two.
 SandboxLimits limitsFor(std::size_t size) {
   SandboxLimits limits;
-  limits.memory = static_cast<std::size_t>(read_bounds::kAssimp.of(size));
-  limits.seconds = 1 + 2 * static_cast<double>(size) / (1 << 20);
+  const double megabytes = static_cast<double>(size) / (1 << 20);
+  limits.memory = static_cast<std::size_t>(read_bounds::kAssimp.larger(size));
+  limits.seconds = std::min(1 + 2 * megabytes, 6.0) + std::max(megabytes - 16, 0.0);
   return limits;
 }
 

@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -16,6 +17,7 @@
 #include "limber/asset/rig_io.h"
 #include "limber/asset/scene_graph.h"
 #include "limber/asset/testing/document_json.h"
+#include "limber/core/read_bounds.h"
 #include "limber/core/sanitizers.h"
 #include "temporary_folder.h"
 #include "warning_kinds.h"
@@ -714,6 +716,50 @@ TEST(ImportModel, ASmallFileDoesNotGetAllMemory) {
     EXPECT_EQ(error.code(), ErrorCode::kLimit);
     EXPECT_THAT(error.what(), HasSubstr("asks for more memory than a file of its size may"));
   }
+}
+
+// 16 million faces, of 16 bytes each in Assimp's memory, in a file of 40 bytes.
+TEST(ImportModel, ASmallFileGetsLessThanAQuarterOfAGigabyte) {
+  if (kAddressSanitizer) GTEST_SKIP() << "memory is not limited there";
+  const Error error = errorOf("OFF\n3 16000000 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "t.off");
+  EXPECT_EQ(error.code(), ErrorCode::kLimit) << error.what();
+  EXPECT_THAT(error.what(), HasSubstr("asks for more memory than a file of its size may"));
+  EXPECT_FALSE(error.remedy().empty());
+}
+
+TEST(ReadBounds, TheImporterStaysBelowSixteenTimesTheFile) {
+  using read_bounds::kMega;
+  for (const std::uint64_t size : {std::uint64_t{0}, kMega, 15 * kMega, 16 * kMega, 17 * kMega, 1000 * kMega}) {
+    const std::uint64_t program = 16 * kMega, most = ReadBound{256 * kMega, 16}.larger(size);
+    EXPECT_LE(program + size + read_bounds::kAssimp.larger(size), most) << size;
+  }
+}
+
+TEST(ImportObj, TooManyChangesOfObjectGroupOrMaterialAreRefused) {
+  const auto file = [](const char* kind, bool sameName) {
+    std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    for (int i = 0; i < 20'000; ++i) text += fmt::format("{} n{}\nf 1 2 3\n", kind, sameName ? 0 : i);
+    return text;
+  };
+  for (const char* kind : {"o", "g", "usemtl"}) {
+    const Error error = errorOf(file(kind, false), "t.obj");
+    EXPECT_EQ(error.code(), ErrorCode::kLimit);
+    EXPECT_THAT(error.what(), HasSubstr(fmt::format("'{}' lines", kind)));
+    EXPECT_FALSE(error.remedy().empty());
+    EXPECT_EQ(collectGeometry(import(file(kind, true), "t.obj")).triangles.size(), 20'000u);
+  }
+}
+
+TEST(ImportModel, TooManyMeshesAreRefused) {
+  std::string text;
+  for (int i = 0; i < 25'000; ++i) {
+    text +=
+        "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 "
+        "0\nendloop\nendfacet\nendsolid\n";
+  }
+  const Error error = errorOf(text, "t.stl");
+  EXPECT_EQ(error.code(), ErrorCode::kLimit) << error.what();
+  EXPECT_THAT(error.what(), HasSubstr("has 25000 meshes"));
 }
 
 TEST(ImportModel, AnswersOnOneLineWhatAssimpSays) {

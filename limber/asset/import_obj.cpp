@@ -11,6 +11,7 @@
 
 #include "limber/asset/obj_lines.h"
 #include "limber/core/error.h"
+#include "limber/core/read_bounds.h"
 
 namespace limber {
 
@@ -24,7 +25,11 @@ class ObjPreparer {
   explicit ObjPreparer(ByteSpan bytes) : bytes_(bytes) {}
 
   ObjText prepare() {
-    forEachObjLine(bytes_, [&](std::string_view line) { count(nextObjWord(line), total_); });
+    forEachObjLine(bytes_, [&](std::string_view line) {
+      const std::string_view kind = nextObjWord(line);
+      count(kind, total_);
+      countChange(kind, line);
+    });
     used_.resize(static_cast<std::size_t>(total_[0]), false);
     result_.text.reserve(bytes_.size() + 12 * used_.size());
     std::size_t faces = 0;
@@ -57,6 +62,18 @@ class ObjPreparer {
     if (kind == "v") ++counts[0];
     if (kind == "vt") ++counts[1];
     if (kind == "vn") ++counts[2];
+  }
+
+  // Assimp makes a mesh at each of these, and looks for an object among all before it.
+  void countChange(std::string_view kind, std::string_view name) {
+    constexpr std::array<std::string_view, 3> kKinds = {"o", "g", "usemtl"};
+    const auto at = static_cast<std::size_t>(std::find(kKinds.begin(), kKinds.end(), kind) - kKinds.begin());
+    if (at == kKinds.size() || name == names_[at]) return;
+    names_[at] = name;  // no element, hence never of a line that was joined
+    const std::uint64_t most = read_bounds::kImportedMeshes.of(bytes_.size() / read_bounds::kBytesImportedMesh);
+    if (++changes_[at] <= most) return;
+    throw Error(ErrorCode::kLimit, fmt::format("it has more than {} '{}' lines, the most for its size", most, kind), {},
+                "join its objects or sort its faces by material, or convert it to GLB");
   }
 
   // Corners "v/vt/vn", with numbers that count from the file's beginning.
@@ -120,7 +137,9 @@ class ObjPreparer {
 
   ByteSpan bytes_;
   Counts total_{}, seen_{};
-  std::vector<bool> used_;  // #v
+  std::vector<bool> used_;                 // #v
+  std::array<std::string_view, 3> names_;  // of the object, group and material at hand
+  std::array<std::uint64_t, 3> changes_{};
   bool hasColors_ = false;
   std::string corners_;                // of the face at hand, as it is written
   std::vector<std::size_t> vertices_;  // of the face at hand

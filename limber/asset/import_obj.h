@@ -38,7 +38,8 @@ struct ObjText {
 };
 
 // Colours are three or four numbers behind a vertex' place; alpha is 1 where it is not given. Throws Error kBadData
-// where all faces name what is not there. Cost: two passes over the text.
+// where all faces name what is not there, kLimit where objects, groups or materials change too often. Cost: two passes
+// over the text.
 ObjText prepareObj(ByteSpan bytes);
 
 // How many textures of an MTL file are moved or scaled (-o, -s, -t).

@@ -34,6 +34,8 @@ Bytes runIsolated(const std::function<Bytes()>& work, const SandboxLimits&) {
   return work();
 }
 
+void allowMemory(std::size_t) {}
+
 #else
 
 namespace {
@@ -65,11 +67,16 @@ void setLimit(int resource, rlim_t value) {
   setrlimit(resource, &wanted);
 }
 
+std::size_t memoryLimit = 0;  // of a child's address space; 0 where it has none
+
 void applyLimits(const SandboxLimits& limits, std::size_t inherited) {
   setLimit(RLIMIT_CORE, 0);
   setLimit(RLIMIT_CPU, static_cast<rlim_t>(std::ceil(limits.seconds)));
 #ifdef RLIMIT_AS
-  if (!kAddressSanitizer && inherited > 0) setLimit(RLIMIT_AS, inherited + limits.memory);
+  if (!kAddressSanitizer && inherited > 0) {
+    memoryLimit = inherited + limits.memory;
+    setLimit(RLIMIT_AS, memoryLimit);
+  }
 #endif
   const int nowhere = ::open("/dev/null", O_WRONLY);  // what a dying importer prints is no message of ours
   if (nowhere >= 0) {
@@ -129,7 +136,8 @@ Error parseError(const Bytes& bytes) {
   } catch (const Error& error) {
     sendError(pipe, error);
   } catch (const std::bad_alloc&) {
-    sendError(pipe, Error(ErrorCode::kLimit, "asks for more memory than a file of its size may"));
+    sendError(pipe, Error(ErrorCode::kLimit, "asks for more memory than a file of its size may", {},
+                          "convert it to GLB, or split it"));
   } catch (const std::exception& error) {
     sendError(pipe, Error(ErrorCode::kBadData, error.what()));
   }
@@ -208,6 +216,7 @@ Bytes receiveMessage(Child& child, std::size_t memory) {
     throw Error(ErrorCode::kLimit, "becomes larger than a file of its size may");
   }
   Bytes bytes;
+  bytes.reserve(static_cast<std::size_t>(std::min<std::uint64_t>(header.length, memory)));
   constexpr std::uint64_t kChunk = std::uint64_t{16} << 20;
   while (bytes.size() < header.length) {
     const std::size_t have = bytes.size();
@@ -238,6 +247,12 @@ Bytes runIsolated(const std::function<Bytes()>& work, const SandboxLimits& limit
   close(ends[1]);
   Child child(pid, ends[0], secondsNow() + kClockPerProcessorTime * limits.seconds);
   return receiveMessage(child, limits.memory);
+}
+
+void allowMemory([[maybe_unused]] std::size_t bytes) {
+#ifdef RLIMIT_AS
+  if (memoryLimit > 0) setLimit(RLIMIT_AS, memoryLimit += bytes);
+#endif
 }
 
 #endif

@@ -22,4 +22,7 @@ struct SandboxLimits {
 // Cost: about a millisecond, and a copy of the result through a pipe.
 Bytes runIsolated(const std::function<Bytes()>& work, const SandboxLimits& limits);
 
+// Called by such work: it may ask for so many bytes more. Does nothing where memory is not limited.
+void allowMemory(std::size_t bytes);
+
 }  // namespace limber

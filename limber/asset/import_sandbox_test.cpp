@@ -94,5 +94,17 @@ TEST(RunIsolated, MemoryBeyondTheLimitIsRefused) {
   EXPECT_EQ(errorOf(take(256), limits).code(), ErrorCode::kLimit);
 }
 
+TEST(RunIsolated, WorkMayAllowItselfMoreMemory) {
+  SandboxLimits limits;
+  limits.memory = std::size_t{64} << 20;
+  const Bytes more = runIsolated(
+      [] {
+        allowMemory(std::size_t{256} << 20);
+        return Bytes(1, static_cast<std::uint8_t>(Bytes(std::size_t{256} << 20, 1).back()));
+      },
+      limits);
+  EXPECT_EQ(more, Bytes(1, 1));
+}
+
 }  // namespace
 }  // namespace limber

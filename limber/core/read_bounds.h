@@ -24,16 +24,20 @@ inline constexpr std::uint64_t kMega = 1 << 20;
 // Attributes, indices and blend shapes as numbers of four bytes, each time that they are named. Files may store bytes,
 // share accessors, and leave out zeros.
 inline constexpr ReadBound kVertexData = {192 * kMega, 8};
-// What Draco and meshopt unpack to.
-inline constexpr ReadBound kDecoded = {32 * kMega, 64};
+// What Draco unpacks to.
+inline constexpr ReadBound kDraco = {32 * kMega, 64};
+// What meshopt unpacks to, the larger of the two. Its own bytes are some two to six times fewer; zeros would give 64.
+inline constexpr ReadBound kMeshopt = {32 * kMega, 8};
 // Files of an archive. NumPy's arrays and texts of models are packed some ten times.
 inline constexpr ReadBound kArchive = {64 * kMega, 32};
 // Arrays of an FBX file. Blender's densest files stay below 20; deflate itself would allow 1032.
 inline constexpr ReadBound kFbxArrays = {16 * kMega, 32};
 // Files beside a glTF, from the second time on that they are named.
 inline constexpr ReadBound kRepeatedFiles = {64 * kMega, 0};
-// Assimp's process. A text of a megabyte takes it some 20 megabytes.
-inline constexpr ReadBound kAssimp = {384 * kMega, 48};
+// Assimp's process, the larger of the two. A text of a megabyte takes it 6 to 12 megabytes.
+inline constexpr ReadBound kAssimp = {224 * kMega, 14};
+// And that much more for each byte of a picture beside the file, which is copied on its way.
+inline constexpr std::uint64_t kAssimpPicture = 4;
 
 // Elements of an accessor without data, which are zeros; the larger of the two, for each byte of the longest buffer.
 inline constexpr ReadBound kZeros = {4096, 1};
@@ -44,6 +48,11 @@ inline constexpr ReadBound kFbxNumbers = {64 * kMega, 16};
 // Objects in the lists of a glTF (nodes, meshes, ...), all together, for each 16 bytes of its JSON.
 inline constexpr ReadBound kListed = {65536, 1};
 inline constexpr std::uint64_t kBytesListed = 16;
+
+// Meshes that Assimp makes of a file, and changes of an OBJ file's object, group or material, for each 512 bytes. Each
+// takes some seven kilobytes until it is written; scenes of a box for each object have one in a kilobyte.
+inline constexpr ReadBound kImportedMeshes = {16384, 1};
+inline constexpr std::uint64_t kBytesImportedMesh = 512;
 
 // What the scene shows more often than the file stores it.
 
