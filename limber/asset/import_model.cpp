@@ -350,13 +350,13 @@ Asset unpack(ByteSpan message) {
   return asset;
 }
 
-// A text file of a megabyte takes Assimp about a tenth of a second; hostile ones get twenty times that, and six
+// A text file of a megabyte takes Assimp about a tenth of a second; hostile ones get twenty times that, and eight
 // seconds at most until 16 megabytes. Large scenes of tens of thousands of objects take it a second for each two.
 SandboxLimits limitsFor(std::size_t size) {
   SandboxLimits limits;
   const double megabytes = static_cast<double>(size) / (1 << 20);
   limits.memory = static_cast<std::size_t>(read_bounds::kAssimp.larger(size));
-  limits.seconds = std::min(1 + 2 * megabytes, 6.0) + std::max(megabytes - 16, 0.0);
+  limits.seconds = std::min(1 + 2 * megabytes, 8.0) + std::max(megabytes - 16, 0.0);
   return limits;
 }
 
