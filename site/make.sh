@@ -13,7 +13,10 @@ doxygen site/Doxyfile 2>$work/doxygen.log || { cat $work/doxygen.log >&2; exit 1
 
 # The pages, with the README as the first; what links to a file of the repository that is no page leads to that file's name alone.
 cp -r docs/. $work/docs
-sed -E 's#\(docs/#(#g' README.md >$work/docs/index.md
+# Their list has the name README.md where it is read in the repository.
+mv $work/docs/README.md $work/docs/pages.md
+sed -E 's#\(docs/#(#g; s#\(README\.md#(pages.md#g' README.md >$work/docs/index.md
+sed -i -E 's#\(\.\./README\.md#(index.md#g' $work/docs/*.md
 for page in $work/docs/*.md; do
   sed -i -E 's#\[([^]]*)\]\((\.\./[^)]*|adapters|data/[^)]*|examples/[^)]*|bindings/[^)]*|[A-Z]+(\.md)?)\)#\1#g' "$page"
 done

@@ -51,6 +51,8 @@ TEXT
 rm -rf "$build/manual"
 mkdir -p "$manual"/{man/man1,bash-completion/completions,zsh/vendor-completions,fish/vendor_completions.d}
 notices "$manual/doc/limber" program
+mkdir -p "$manual/doc/limber/docs"
+cp docs/*.md docs/*.json "$manual/doc/limber/docs" # the pages that --help names
 notices "$build/manual/development/doc/liblimber-dev" library
 manual_page limber
 for command in $(commands_of); do

@@ -466,6 +466,12 @@ blender_addon() {
   counted_or_again apps/blender/tests/run.sh build/packages/limber-blender-*.zip build/release/limber "$output/blender_addon" build/packages/limber-[0-9]*.tgz
 }
 
+# Every command of the manual and of --help as it is written; says which are left out, and why.
+manual_commands() {
+  counted node tests/manual_commands.mjs build/release/limber "$output/manual" &&
+    grep -E '^  [0-9]+ commands?: ' "$output/counted_$BASHPID.log" | sed 's/^ */   not run: /'
+}
+
 # 300 models; damaged ones among them where the shared ones are there.
 batch_of_many() {
   local folder
@@ -583,6 +589,7 @@ remaining_stages() {
   slow=$(slow_tests $output/programs)
   stage "every model, every count of handles" model_tests release
   stage "faulty files, through the program" broken_files
+  stage "commands of the manual and of --help, as they are written" manual_commands
   stage "batches, killed and gone on with" batch_of_many
   stage "batches by Slurm and GNU parallel" batch_by_engines
   stage "Kubernetes file against its schema" kubernetes_job

@@ -278,7 +278,8 @@ void addBatchCommand(CLI::App& program) {
       ->type_name("N");
   command->add_flag("--retry", arguments->retries, "do again what failed");
   arguments->adapters.addFolderTo(*command);
-  command->add_flag("--example", arguments->prints, "print a plan that runs as it is, in a folder with models");
+  command->add_flag("--example", arguments->prints,
+                    "print a plan that runs as it is, in a folder of models without rigs");
   command->add_flag("--quiet,-q", arguments->quiet, "print nothing but errors");
   command->require_subcommand(0, 1);
   addStatus(*command);
@@ -293,9 +294,11 @@ void addBatchCommand(CLI::App& program) {
       "\nExit code 0 where all is done, 1 where some entries failed, 2 where the plan or the call is wrong,\n"
       "4 where the batch itself could not go on: its folder cannot be written, or no process started.\n"
       "\nExamples:\n"
-      "  limber batch --example > plan.json\n"
-      "  limber batch plan.json -o out\n"
-      "  limber batch plan.json -o out --shard 3/16\n"
+      "  mkdir library\n"
+      "  limber sample biped -o library/person.glb\n"
+      "  limber batch --example > library/plan.json\n"
+      "  limber batch library/plan.json -o out\n"
+      "  limber batch library/plan.json -o out --shard 3/16\n"
       "  limber batch status out",
       fmt::join(kBatchCommands, ", ")));
   command->callback([command, arguments] {

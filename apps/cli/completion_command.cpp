@@ -143,6 +143,7 @@ void addCompletionCommand(CLI::App& program) {
   command->add_option("shell", *shell, "bash, zsh or fish")->required()->check(CLI::IsMember({"bash", "zsh", "fish"}));
   command->footer(
       "Example:\n"
+      "  mkdir -p ~/.local/share/bash-completion/completions ~/.config/fish/completions\n"
       "  limber completion bash > ~/.local/share/bash-completion/completions/limber\n"
       "  limber completion fish > ~/.config/fish/completions/limber.fish");
   command->callback([&program, shell] {

@@ -402,15 +402,17 @@ void addConvertCommand(CLI::App& program) {
       "that are written. A BVH, a USD and a VRMA hold one clip: of several each gets a file, OUT_CLIP.bvh.\n"
       "Edits come in the order trim, mirror, loop, root motion, fps, tolerance.\n"
       "\nExamples:\n"
-      "  limber convert walk.bvh walk.glb --unit cm\n"
-      "  limber convert walk.bvh run.bvh -o both.glb --unit cmu --fps 30\n"
+      "  limber convert walk.bvh walk.glb\n"
+      "  limber convert walk.bvh walk_cm.bvh --output-unit cm\n"
+      "  limber convert walk_cm.bvh walk.glb --unit cm\n"
+      "  limber convert walk.bvh run.bvh -o both.glb --fps 30\n"
       "  limber convert amass_walk.npz walk.bvh --fps 30\n"
       "  limber convert walk.glb game.glb --loop --root-joint --tolerance 1\n"
       "  limber convert hero.glb hero.fbx --target unreal\n"
-      "  limber convert hero.glb hero.usdz --clip walk\n"
+      "  limber convert walking.glb walking.usdz --clip walk\n"
       "  limber convert hero.glb hero.vrm --vrm-author Ada --vrm-allow everyone\n"
-      "  limber convert hero.glb wave.vrma --clip wave\n"
-      "  limber convert hero.glb waving.bvh --clip wave --trim 0.5:2 --mirror");
+      "  limber convert walking.glb walk.vrma --clip walk\n"
+      "  limber convert walking.glb mirrored.bvh --clip walk --trim 0.5:2 --mirror");
   command->callback([options] { run(*options); });
 }
 

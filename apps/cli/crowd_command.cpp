@@ -131,7 +131,8 @@ void addCrowdCommand(CLI::App& program) {
       "docs/crowds.md tells more.\n"
       "\nExamples:\n"
       "  limber crowd hero.glb --motions walk.bvh --count 100 --in-place -o crowd.glb\n"
-      "  limber crowd anna.glb ben.glb --motions idle.bvh wave.bvh --count 40 --turn 60 -o crowd.glb");
+      "  limber rig person.glb --template humanoid-fingers -o person_rigged.glb\n"
+      "  limber crowd hero.glb person_rigged.glb --motions walk.bvh run.bvh --count 40 --turn 60 -o crowd.glb");
   command->callback([arguments] { runCrowd(*arguments); });
 }
 

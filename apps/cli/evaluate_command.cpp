@@ -354,8 +354,7 @@ void addModel(CLI::App& evaluate) {
       "lost, and vertices that go into the body. Compare rigs of one model by these, not rigs of different models.\n"
       "The deformer changes the figures in motion alone.\n"
       "\n" +
-      deformerList() +
-      "\nExample:\n  limber rig person.glb --replace-rig -o rigged.glb\n  limber evaluate model rigged.glb --json");
+      deformerList() + "\nExample:\n  limber evaluate model hero.glb --json");
   command->callback([options] { runModel(*options); });
 }
 
@@ -389,8 +388,8 @@ void addRig(CLI::App& evaluate) {
       "model's box, precision, recall and IoU of joints paired within 5 %, with and without fingers, and how far "
       "joints\n"
       "of the same meaning are apart, in percent of the height.\n"
-      "\nExample:\n  limber rig person.glb --replace-rig --template humanoid -o predicted.glb\n"
-      "  limber evaluate rig predicted.glb person.glb --json");
+      "\nExample:\n  limber rig hero.glb --replace-rig --template humanoid -o predicted.glb\n"
+      "  limber evaluate rig predicted.glb hero.glb --json");
   command->callback([options] { runRig(*options); });
 }
 
@@ -443,8 +442,8 @@ void addRiggers(CLI::App& evaluate) {
       "the joints that lie inside the model, and seconds, over the files that all of them rigged. Riggers of handles\n"
       "choose their number themselves.\n"
       "\nExamples:\n"
-      "  limber evaluate templates characters/*.glb --template humanoid\n"
-      "  limber evaluate templates characters/*.glb --template humanoid --clip Walk --time 0.4\n"
+      "  limber evaluate templates hero.glb --template humanoid\n"
+      "  limber evaluate templates walking.glb --template humanoid --clip walk --time 0.4\n"
       "  limber evaluate templates --labels creatures/MANIFEST.tsv -o reliability.md\n"
       "  limber evaluate templates --labels creatures/MANIFEST.tsv --rigger all");
   command->callback([options] { runRiggers(*options); });
@@ -460,8 +459,8 @@ void addWeights(CLI::App& evaluate) {
       "Prints the mean L1 distance, precision and recall of influences above 1/256, the deformation error in 20\n"
       "random poses of up to 30 degrees at each joint (percent of the bounding box's diagonal, fixed seed), the\n"
       "smoothness over edges, and the vertices left out.\n"
-      "\nExample:\n  limber rig person.glb --keep-skeleton -o weighted.glb\n"
-      "  limber evaluate weights weighted.glb person.glb --json");
+      "\nExample:\n  limber rig hero.glb --keep-skeleton -o weighted.glb\n"
+      "  limber evaluate weights weighted.glb hero.glb --json");
   command->callback([options] { runWeights(*options); });
 }
 
@@ -529,7 +528,9 @@ void addEvaluateCommand(CLI::App& program) {
   CLI::App* evaluate =
       program.add_subcommand("evaluate", "Measure how good weights, skeletons, solvers and motions are");
   evaluate->require_subcommand(1);
-  evaluate->footer("Example:\n  limber evaluate weights result.glb truth.glb");
+  evaluate->footer(
+      "Example:\n  limber rig hero.glb --keep-skeleton --skinning envelopes -o result.glb\n  limber evaluate weights "
+      "result.glb hero.glb");
   addWeights(*evaluate);
   addRig(*evaluate);
   addModel(*evaluate);

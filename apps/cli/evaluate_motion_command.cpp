@@ -175,7 +175,7 @@ void addRetargetingEvaluation(CLI::App& evaluate) {
   command->footer(
       "The measures are those of limber evaluate motion: means over all pairs of a clip and a character, the worst in\n"
       "brackets.\n"
-      "\nExample:\n  limber evaluate retargeting --motion motions/*.bvh --character people/*.glb");
+      "\nExample:\n  limber evaluate retargeting --motion walk.bvh run.bvh --character hero.glb");
   command->callback([options] { runMatrix(*options); });
 }
 

@@ -168,7 +168,10 @@ int runProgram(const std::vector<std::string>& arguments, const BatchCall* batch
                    "limber");
   program.set_version_flag("--version", "limber " LIMBER_VERSION);
   addCommandsFor(batch, program);
-  program.footer("limber COMMAND --help shows the options of a command, with an example.");
+  program.footer(
+      "limber COMMAND --help shows the options of a command, with an example. The examples use files that those of\n"
+      "limber sample --help make. Pages that are named as docs/scale.md are in the folder docs of the source, and in\n"
+      "share/doc/limber of the .deb and the .tar.gz.");
   if (const std::string problem = wrongCommand(program, arguments); !problem.empty()) return usage(program, problem);
   try {
     try {

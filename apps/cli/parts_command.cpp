@@ -196,7 +196,7 @@ void addPartsCommand(CLI::App& program) {
       "\nExamples:\n"
       "  limber parts hero.glb -o hero_parts.glb\n"
       "  limber parts hero.glb --detail joints --split -o hero_split.glb\n"
-      "  limber parts scan.obj --by shape --count 6 --split -o print.stl");
+      "  limber parts person.glb --by shape --count 6 --split -o print.stl");
   command->callback([options] { run(*options); });
 }
 

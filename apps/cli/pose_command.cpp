@@ -211,7 +211,8 @@ std::string poseHelp() {
   text +=
       "  Behind each, where it matters: @weight=2,priority=1. Priority 0 comes first; later ones get what those "
       "before\n"
-      "  leave free. What cannot be met is said, with what is left and what is in the way.\n"
+      "  leave free. What cannot be met is said, with what is left and what is in the way; the exit code is 0 then, "
+      "too.\n"
       "Sample poses:\n";
   for (const SamplePose& pose : samplePoses()) text += fmt::format("  {:<20}{}\n", pose.name, pose.summary);
   return text +
@@ -219,18 +220,23 @@ std::string poseHelp() {
          "all\n"
          "tasks at once. Axes and points are the world's. Joints are called as in the file or as VRM's bones "
          "(leftHand).\n"
+         "Names in the examples are those of handles (rigged.glb) and of the template humanoid (hero.glb).\n"
          "The file that --poses names: {\"poses\": [{\"name\": \"wave\", \"turn\": [{\"joint\": \"head\", \"axis\": "
          "[0, 1, 0],\n\"degrees\": 30}], \"move\": [{\"joint\": \"hips\", \"offset\": [0, -0.1, 0]}], \"reach\": "
          "[{\"joint\": \"hand.L\",\n\"target\": [0.4, 1.2, 0.3], \"pole\": [0, 1, -1], \"base\": \"chest\"}], "
          "\"tasks\": [{\"kind\": \"look-at\", \"joint\": \"head\",\n\"target\": [0, 1.6, 2], \"weight\": 2, "
          "\"priority\": 1}]}]}  (docs/poses.schema.json)\n"
          "\nExamples:\n"
-         "  limber pose rigged.glb --turn head=y:30 --move handle_07=0,0.1,0 --reach hand.L=0.4,1.2,0.3 -o posed.glb\n"
-         "  limber pose rigged.glb --task look-at:head=0,1.6,2 --task keep-out:leftHand=sphere:0,1,0,0.3 -o posed.glb\n"
-         "  limber pose rigged.glb --poses poses.json --bake -o posed.obj\n"
+         "  limber pose rigged.glb --turn handle_03.L=z:30 --move handle_07.L=0,0.1,0 -o posed.glb\n"
+         "  limber pose hero.glb --turn head=y:30 --move hips=0,-0.1,0 --reach leftHand=0.4,1.2,0.3 -o posed.glb\n"
+         "  limber pose hero.glb --task look-at:head=0,1.6,2 --task keep-out:leftHand=sphere:0,1,0,0.3 -o posed.glb\n"
+         "  echo '{\"poses\": [{\"name\": \"nod\", \"turn\": [{\"joint\": \"head\", \"axis\": [1, 0, 0], \"degrees\": "
+         "20}]}]}' "
+         "> poses.json\n"
+         "  limber pose hero.glb --poses poses.json --bake -o posed.obj\n"
          "  limber pose walking.glb --clip walk --time 0.4 --bake -o statue.stl\n"
-         "  limber pose rigged.glb --turn upper_arm.L=z:45 --set-rest -o t_pose.glb\n"
-         "  limber pose person.glb --apply sit -o sitting.glb\n"
+         "  limber pose hero.glb --turn leftUpperArm=z:45 --set-rest -o t_pose.glb\n"
+         "  limber pose hero.glb --apply sit -o sitting.glb\n"
          "  limber pose walking.glb --clip walk --time 0.4 -o step.pose.json";
 }
 

@@ -220,7 +220,11 @@ void addPreviewCommand(CLI::App& program) {
       ->add_option("--size", options->size,
                    "width and height in pixels (default 1024x768; of each picture of several 320x320)")
       ->type_name("WxH");
-  command->add_option("--clip", options->clip, "the clip to show (default: the first)")->type_name("NAME");
+  command
+      ->add_option(
+          "--clip", options->clip,
+          "the clip of --time, --frames or --animate, without which the rest pose is drawn (default: the first)")
+      ->type_name("NAME");
   CLI::Option* time = command->add_option("--time", options->time, "a moment of the clip, in seconds")
                           ->check(momentOfClip())
                           ->type_name("S");
@@ -260,10 +264,10 @@ void addPreviewCommand(CLI::App& program) {
       "  limber preview rigged.glb --show stretch --worst 4 --deformer delta-mush -o stretch.png\n"
       "  limber preview rigged.glb --show handles --view 30,15 -o handles.png\n"
       "  limber preview walking.glb --frames 8 -o sheet.png\n"
-      "  limber preview scan.obj --show parts --count 6 -o parts.png\n"
-      "  limber preview walk.bvh --animate -o walk.png\n"
-      "  limber preview walking.glb --animate --deformer direct-delta-mush -o walk.png\n"
-      "  limber preview dragon.glb --turntable --background transparent -o dragon.png");
+      "  limber preview person.glb --show parts --count 6 -o parts.png\n"
+      "  limber preview walk.bvh --animate --fps 8 -o walk.png\n"
+      "  limber preview walking.glb --animate --fps 8 --deformer direct-delta-mush -o walk.png\n"
+      "  limber preview dragon.glb --turntable --fps 8 --background transparent -o dragon.png");
   command->callback([options] { run(*options); });
 }
 

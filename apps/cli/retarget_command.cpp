@@ -308,7 +308,9 @@ void addOptions(CLI::App& command, const std::shared_ptr<RetargetArguments>& opt
       ->check(CLI::IsMember({"hip-height", "leg-length", "none"}))
       ->type_name("WHAT")
       ->capture_default_str();
-  command.add_option("--reach", retarget.reach, "hands: 0 where the turned arms bring them, 1 where the motion's are")
+  command
+      .add_option("--reach", retarget.reach,
+                  "positions of hands: 0 as the arms' rotations give them, 1 as in the motion, scaled to the body")
       ->check(numberIn(0, 1))
       ->type_name("D")
       ->capture_default_str();
@@ -317,7 +319,7 @@ void addOptions(CLI::App& command, const std::shared_ptr<RetargetArguments>& opt
       ->capture_default_str();
   command.add_flag("--no-contacts", options->noContacts,
                    "let feet slide, hands miss what they touched and arms enter the body");
-  command.add_flag("--no-smoothing", options->noSmoothing, "leave rougher than the motion what came out so");
+  command.add_flag("--no-smoothing", options->noSmoothing, "do not smooth a result that is rougher than the motion");
   command
       .add_option_function<double>(
           "--ground",
@@ -347,10 +349,11 @@ void addRetargetCommand(CLI::App& program) {
   command->get_option("MOTIONS")->required(false);  // MODEL is the first of them with --characters: looked at later
   options->characters.addTo(*command);
   command->footer(
-      retargetHelp("  limber retarget hero.glb motions/*.bvh -o hero_all.glb\n"
-                   "  limber retarget hero.glb dance.fbx -o dancing.glb --save-map map.json\n"
+      retargetHelp("  limber retarget hero.glb walk.bvh run.bvh -o hero_all.glb\n"
+                   "  limber retarget hero.glb run.bvh -o running.glb --save-map map.json\n"
                    "  limber retarget hero.glb walk.bvh run.bvh --blend 0.4 -o jogging.glb\n"
-                   "  limber retarget --characters heroes.txt motions/*.bvh -o out"));
+                   "  echo hero.glb > heroes.txt\n"
+                   "  limber retarget --characters heroes.txt walk.bvh run.bvh -o out"));
   command->callback([options] { runRetarget(*options); });
 }
 
@@ -365,7 +368,9 @@ void addAnimateCommand(CLI::App& program) {
   command->add_option("--template", options->templateName, "which skeleton: auto, or one by name, however unsure")
       ->type_name("NAME")
       ->capture_default_str();
-  command->footer(retargetHelp("  limber animate scan.obj walk.bvh -o walking.glb"));
+  command->footer(
+      retargetHelp("  limber animate person.glb walk.bvh -o walking.glb\n"
+                   "  limber animate person.glb walk.bvh --target unity -o walking.fbx"));
   command->callback([options] { runAnimate(*options); });
 }
 

@@ -275,13 +275,16 @@ std::string rigHelp() {
          "complete; a file of that name is replaced, also where it is the input.\n"
          "\nExamples:\n"
          "  limber rig dragon.glb --handles 20 -o rigged.glb\n"
-         "  limber rig scan.obj --template humanoid --pin leftHand=0.71,1.43,0.02 -o character.glb\n"
-         "  limber rig person.glb --keep-skeleton --max-influences 8 -o weighted.glb --json report.json\n"
-         "  limber rig scan.obj --template humanoid --target unreal -o character.glb\n"
-         "  limber rig scan.obj --rigger unirig --seed 7 -o character.glb\n"
-         "  limber rig --from-animation baked.glb --bones 30 -o rigged.glb\n"
-         "  limber rig --from-animation frames/ --fps 24 -o rigged.glb\n"
-         "  curl -s https://example.org/dragon.glb | limber rig - -o - > rigged.glb";
+         "  limber rig person.glb --template humanoid -o hero.glb\n"
+         "  limber rig person.glb --template humanoid --pin leftHand=0.55,1.04,0 -o character.glb\n"
+         "  limber rig hero.glb --keep-skeleton --max-influences 8 -o weighted.glb --json report.json\n"
+         "  limber rig person.glb --template humanoid --target unreal -o character.glb\n"
+         "  limber rig person.glb --rigger unirig --seed 7 -o character.glb\n"
+         "  limber rig --from-animation walking.glb --bones 30 -o bones.glb\n"
+         "  mkdir frames\n"
+         "  for t in 1 2 3 4; do limber pose walking.glb --time 0.$t --bake -o frames/$t.obj -q; done\n"
+         "  limber rig --from-animation frames/ --fps 24 -o bones.glb\n"
+         "  limber rig - -o - < dragon.glb > rigged.glb";
 }
 
 }  // namespace

@@ -122,9 +122,16 @@ std::string sampleHelp() {
          "\nExamples:\n"
          "  limber sample quadruped -o fox.glb\n"
          "  limber sample biped -o person.glb\n"
+         "  limber rig person.glb --template humanoid -o hero.glb\n"
+         "  limber sample winged -o dragon.glb\n"
+         "  limber rig dragon.glb --handles 20 -o rigged.glb\n"
          "  limber sample walk -o walk.bvh\n"
-         "  limber sample dancing-stool -o stool.glb\n"
-         "  limber animate person.glb walk.bvh -o walking.glb";
+         "  limber sample run -o run.bvh\n"
+         "  limber animate person.glb walk.bvh -o walking.glb\n"
+         "  limber sample dancing-stool -o dancing.glb\n"
+         "  limber sample stool -o stool.glb\n"
+         "  limber sample quadruped-walk -o stool.bvh\n"
+         "  limber animate stool.glb stool.bvh --template quadruped -o walking_stool.glb";
 }
 
 }  // namespace

@@ -99,7 +99,8 @@ void addSessionCommand(CLI::App& program) {
   auto options = std::make_shared<SessionArguments>();
   CLI::App* command = program.add_subcommand("session", "Do again what was done in the studio");
   command->require_subcommand(1);
-  command->footer("Example:\n  limber session replay commands.json -o posed.glb");
+  command->footer(
+      "Example:\n  limber sample dancing-stool -o commands.json\n  limber session replay commands.json -o posed.glb");
   CLI::App* replay = command->add_subcommand("replay", "Run a recorded list of commands and write the result");
   replay
       ->add_option("COMMANDS", options->commands,
@@ -122,8 +123,9 @@ void addSessionCommand(CLI::App& program) {
       "Further models come into the scene by add_sample and add_file; choose_member says which one the commands behind "
       "it are for.\n"
       "\nExample:\n"
+      "  limber sample dancing-stool -o commands.json\n"
       "  limber session replay commands.json -o posed.glb\n"
-      "  limber session replay fox.limber -o posed.glb");
+      "  limber session replay commands.json -o posed.stl");
   replay->callback([options] { run(*options); });
 
   CLI::App* types = command->add_subcommand("types", "Print the commands as a union of TypeScript types");

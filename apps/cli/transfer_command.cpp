@@ -151,10 +151,10 @@ void addTransferCommand(CLI::App& program) {
       "their names, their tree and their axes. Both bodies should be of one kind, such as people; the poses in which\n"
       "they stand may differ. docs/methods.md tells more.\n"
       "\nExamples:\n"
-      "  limber transfer hero.glb scan.obj -o scan_rigged.glb\n"
-      "  limber transfer hero.glb villain.glb -o villain_as_hero.glb --report gaps.json\n"
-      "  limber transfer hero.glb scan.obj --colors -o scan_as_hero.glb\n"
-      "  limber retarget scan_rigged.glb walk.bvh -o scan_walks.glb");
+      "  limber transfer hero.glb person.glb -o person_rigged.glb\n"
+      "  limber transfer hero.glb person.glb -o person_rigged.glb --report gaps.json\n"
+      "  limber transfer hero.glb person.glb --colors -o person_as_hero.glb\n"
+      "  limber retarget person_rigged.glb walk.bvh -o person_walks.glb");
   command->callback([options] { runTransferCommand(*options); });
 }
 

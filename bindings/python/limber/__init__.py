@@ -1,7 +1,7 @@
 """limber makes any 3D model limber: a static mesh goes in; a rigged, skinned, posed or moving character comes out.
 
     import limber
-    model = limber.read("scan.obj")
+    model = limber.read("person.glb")
     report = model.rig(template="humanoid")
     model.retarget("walk.bvh")
     model.write("walking.glb")
