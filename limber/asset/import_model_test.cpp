@@ -17,6 +17,7 @@
 #include "limber/asset/rig_io.h"
 #include "limber/asset/scene_graph.h"
 #include "limber/asset/testing/document_json.h"
+#include "limber/asset/write.h"
 #include "limber/core/read_bounds.h"
 #include "limber/core/sanitizers.h"
 #include "temporary_folder.h"
@@ -733,6 +734,13 @@ TEST(ReadBounds, TheImporterStaysBelowSixteenTimesTheFile) {
     const std::uint64_t program = 16 * kMega, most = ReadBound{256 * kMega, 16}.larger(size);
     EXPECT_LE(program + size + read_bounds::kAssimp.larger(size), most) << size;
   }
+}
+
+TEST(ImportObj, NumbersMayBeginWithAPoint) {
+  const std::string face = "f 1/1/1 2/1/1 3/1/1\n";
+  const Asset asset = import("v .5 0 0\nv 1 -.5 0\nv 0 1 .25\nvt .5 .25\nvn 0 .6 .8\n" + face, "t.obj");
+  const Asset same = import("v 0.5 0 0\nv 1 -0.5 0\nv 0 1 0.25\nvt 0.5 0.25\nvn 0 0.6 0.8\n" + face, "t.obj");
+  EXPECT_EQ(writeGlb(asset), writeGlb(same));
 }
 
 TEST(ImportObj, TooManyChangesOfObjectGroupOrMaterialAreRefused) {

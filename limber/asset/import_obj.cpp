@@ -41,6 +41,9 @@ class ObjPreparer {
         addFace(kind, rest);
       } else if (kind == "v") {
         addVertex(rest);
+      } else if (kind == "vt" || kind == "vn") {
+        result_.text += kind;
+        for (std::string_view word = nextObjWord(rest); !word.empty(); word = nextObjWord(rest)) addNumber(word);
       } else if (!kind.empty()) {  // no comments: behind a backslash at their end Assimp goes on
         result_.text += line;
       }
@@ -111,6 +114,15 @@ class ObjPreparer {
     return true;
   }
 
+  // Assimp takes a word that begins with a point for no number.
+  void addNumber(std::string_view word) {
+    const std::size_t signs = word.starts_with('-') || word.starts_with('+') ? 1 : 0;
+    result_.text += ' ';
+    result_.text += word.substr(0, signs);
+    if (word.substr(signs).starts_with('.')) result_.text += '0';
+    result_.text += word.substr(signs);
+  }
+
   void addVertex(std::string_view line) {
     const ObjVertexWords vertex(line);
     const auto& [words, count] = vertex;
@@ -124,9 +136,8 @@ class ObjPreparer {
     result_.text += 'v';
     const double w = vertex.w();
     for (std::size_t i = 0; i < 3 && i < count; ++i) {
-      result_.text += ' ';
       const std::optional<double> value = w != 1 ? objNumberOf(words[i]) : std::nullopt;
-      result_.text += value ? fmt::format("{}", *value / w) : std::string(words[i]);
+      addNumber(value ? fmt::format("{}", *value / w) : std::string(words[i]));
     }
     const std::size_t number = result_.colors.size();
     if (count >= 3) {
