@@ -5,9 +5,10 @@
 // Each page runs from top to bottom in an empty folder that holds nothing but the samples that README.md makes; the help texts
 // have those that `limber sample --help` makes, too. A command has to end with 0, or with the exit code that its comment
 // names ("# exit code 1"). A block of code without a command has to be something that is known (JSON, C++, ...), so that no
-// command is overlooked. What cannot be run here is listed in `leftOut` with the reason. Ends with "N passed, N failed".
+// command is overlooked. What cannot be run here is listed in `leftOut` with the reason; OUTPUT_FOLDER/not_run.txt
+// counts it. Ends with "N passed, N failed".
 import { spawn, spawnSync } from 'node:child_process';
-import { copyFileSync, existsSync, mkdirSync, readFileSync, readdirSync, rmSync, symlinkSync } from 'node:fs';
+import { copyFileSync, existsSync, mkdirSync, readFileSync, readdirSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
 import { cpus } from 'node:os';
 import { basename, dirname, join, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -186,12 +187,14 @@ if (failed === 0 || only) {
   ]);
 }
 
-console.log('Not run:');
+let notRun = '';
 for (const [reason, commands] of results) {
   if (commands.length === 0 && !only) fail(`nothing is left out for the reason "${reason}" any more: take it off the list`);
-  else console.log(`  ${commands.length} ${commands.length === 1 ? 'command' : 'commands'}: ${reason}`);
-  if (verbose) for (const command of commands) console.log(`    ${command}`);
+  else notRun += `${commands.length} ${commands.length === 1 ? 'command' : 'commands'}: ${reason}\n`;
+  if (verbose) for (const command of commands) notRun += `  ${command}\n`;
 }
+writeFileSync(join(output, 'not_run.txt'), notRun);
+console.log(`Not run:\n${notRun}`);
 console.log(`The slowest of ${slowest.length}:`);
 for (const [seconds, command] of slowest.sort((a, b) => b[0] - a[0]).slice(0, verbose ? 20 : 5)) console.log(`  ${seconds.toFixed(1)} s ${command}`);
 console.log(`${passed} passed, ${failed} failed`);
