@@ -26,6 +26,7 @@ constexpr std::size_t kPairSamples = 50;      // triangles of a component
 constexpr std::size_t kMaxTries = 8;          // pairs by shape that are looked at for one component
 constexpr double kMaxDistance = 0.03;         // of the figure's size, of a copy from the surface
 constexpr double kMinPaired = 0.8;            // of the surface's area
+constexpr double kMinDiagonal = 2;            // of a component's box, in largest distances of a copy, to be evidence
 constexpr double kMinAreaRatio = 0.25;        // of two components that are a pair by their shape
 constexpr double kSameOrder = 0.9;            // of what tells outer from inner, for all to be in the same order
 
@@ -99,12 +100,15 @@ class Copies {
     return true;
   }
 
-  // Whether the components in any of the pairs are nearly all of the surface.
+  // Whether the components in any of the pairs are nearly all of the surface. Small ones, as leaves, have others of the
+  // same shape near them without being copies.
   bool isMost(const std::vector<Candidate>& pairs) const {
     std::vector<bool> isIn(components_.size(), false);
     for (const Candidate& pair : pairs) isIn[pair.a] = isIn[pair.b] = true;
     double area = 0;
-    for (std::size_t i = 0; i < isIn.size(); ++i) area += isIn[i] ? components_[i].area : 0;
+    for (std::size_t i = 0; i < isIn.size(); ++i) {
+      if (isIn[i] && components_[i].box.diagonal() > kMinDiagonal * maxDistance_) area += components_[i].area;
+    }
     return area >= kMinPaired * area_;
   }
 

@@ -71,6 +71,21 @@ TEST(InnerCopies, ABodyUnderItsClothesIsNone) {
   EXPECT_TRUE(copiesIn(clothes).empty());
 }
 
+// Each leaf has others of the same triangles within a copy's distance.
+TEST(InnerCopies, LeavesOfABushAreNone) {
+  TriMesh bush;
+  for (int i = 0; i < 600; ++i) {
+    const float x = 0.04f * static_cast<float>(i % 8), y = 0.04f * static_cast<float>(i / 8 % 8);
+    const Vec3f middle(x, y, 0.04f * static_cast<float>(i / 64));
+    TriMesh leaf = testing::ball(1);
+    for (Vec3f& p : leaf.positions) p = 0.008f * p + middle;
+    bush = testing::joined(bush, leaf);
+  }
+  TriMesh pole = testing::ball(1);
+  for (Vec3f& p : pole.positions) p = Vec3f(0.01f * p.x() - 0.2f, p.y(), 0.01f * p.z());
+  EXPECT_TRUE(copiesIn(testing::joined(bush, pole)).empty());
+}
+
 TEST(InnerCopies, AnEyeAndALensInAFigureAreNone) {
   TriMesh mesh = testing::openFigure();
   for (const float x : {-0.4f, 0.4f}) {
