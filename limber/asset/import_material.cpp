@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <string_view>
 
 #include <assimp/GltfMaterial.h>
 #include <assimp/material.h>
@@ -100,10 +102,10 @@ std::optional<Bytes> MaterialImporter::imageBytes(const std::string& path) {
     return Bytes();                                                           // bare pixels: told as unsupported
   }
   std::optional<Bytes> picture = io_.sideFile(path);
-  // A file under many names counts once.
-  if (picture && pictureSizes_.insert(picture->size()).second) {
-    allowMemory(static_cast<std::size_t>(read_bounds::kAssimpPicture * picture->size()));
-  }
+  if (!picture) return picture;
+  const std::string_view content(reinterpret_cast<const char*>(picture->data()), picture->size());
+  const bool isNew = pictures_.insert(std::hash<std::string_view>()(content)).second;
+  if (isNew) allowMemory(static_cast<std::size_t>(read_bounds::kAssimpPicture * picture->size()));
   return picture;
 }
 

@@ -35,7 +35,7 @@ class MaterialImporter {
   const ImportIo& io_;
   std::map<unsigned, Index> materials_;
   std::map<std::string, std::optional<Index>> textures_;
-  std::set<std::size_t> pictureSizes_;  // of the files that were read
+  std::set<std::size_t> pictures_;  // hashes of those that were read: one under many names counts once
 };
 
 }  // namespace limber

@@ -14,8 +14,7 @@ std::vector<Index> outerVertices(const FigureSurface& surface) {
   for (const Index v : surface.innerShell) isLeftOut[v] = true;
   std::vector<Index> outer = surface.innerShell;
   for (std::size_t i = 0; i < outer.size(); ++i) {
-    if (i < surface.innerShellOuter.size() && surface.innerShellOuter[i] != kNoIndex)
-      outer[i] = surface.innerShellOuter[i];
+    if (surface.innerShellOuter[i] != kNoIndex) outer[i] = surface.innerShellOuter[i];
     if (isLeftOut[outer[i]]) outer[i] = nearestCorner(mesh, bvh.nearestPoint(mesh.position(outer[i])));
   }
   return outer;

@@ -22,6 +22,7 @@ TEST(BindLeftOut, ShellsFollowTheSurfaceAndFloorsTheRoot) {
   mesh.positions.push_back(0.8f * mesh.positions[17]);  // below a vertex of the middle ring
   mesh.positions.emplace_back(9, 9, 9);
   surface.innerShell = {mesh.vertexCount() - 2};
+  surface.innerShellOuter = {kNoIndex};
   surface.surroundings = {mesh.vertexCount() - 1};
   weights.joints.insert(weights.joints.end(), {5, 5, 5, 5});
   weights.weights.insert(weights.weights.end(), {1, 0, 1, 0});

@@ -7,20 +7,11 @@
 #include "limber/asset/motion_io.h"
 #include "limber/asset/pose_io.h"
 #include "limber/core/error.h"
-#include "limber/pipeline/auto_rig.h"
+#include "limber/preview/testing/rigged_stool.h"
 #include "limber/samples/samples.h"
 
 namespace limber {
 namespace {
-
-Asset riggedStool() {
-  Asset asset = makeSample("stool");
-  AutoRigOptions options;
-  options.rig.handles = 3;
-  Progress progress;
-  autoRig(asset, options, progress);
-  return asset;
-}
 
 // The root goes up by a metre within a second.
 Clip rising() {
@@ -31,7 +22,7 @@ Clip rising() {
 }
 
 TEST(Animation, ShowsTheSceneAtAMomentOfAClip) {
-  Asset asset = riggedStool();
+  Asset asset = testing::riggedStool();
   const AssetSkeleton skeleton = readSkeleton(asset);
   Clip clip = rising();
   const Vec3f rest = skeleton.skeleton.joints[0].rest.translation.cast<float>();
@@ -74,7 +65,7 @@ TEST(Animation, ShowsBlendShapesAtAMoment) {
 }
 
 TEST(Animation, BendsByTheDeformerThatIsAskedFor) {
-  Asset asset = riggedStool();
+  Asset asset = testing::riggedStool();
   const AssetSkeleton skeleton = readSkeleton(asset);
   Pose pose = restPose(skeleton.skeleton);
   pose.locals[1].rotation = Quat(Eigen::AngleAxisd(1.2, Vec3::UnitZ())) * pose.locals[1].rotation;

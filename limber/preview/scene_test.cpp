@@ -3,19 +3,14 @@
 #include <gtest/gtest.h>
 
 #include "limber/asset/pose_io.h"
-#include "limber/pipeline/auto_rig.h"
-#include "limber/samples/samples.h"
+#include "limber/preview/testing/rigged_stool.h"
 #include "warning_kinds.h"
 
 namespace limber {
 namespace {
 
 TEST(Scene, ShowsARiggedModelAsItsJointsStand) {
-  Asset asset = makeSample("stool");
-  AutoRigOptions options;
-  options.rig.handles = 3;
-  Progress progress;
-  autoRig(asset, options, progress);
+  Asset asset = testing::riggedStool();
   const Scene before = makeScene(asset);
 
   const AssetSkeleton rig = readSkeleton(asset);
@@ -37,11 +32,7 @@ TEST(Scene, ShowsARiggedModelAsItsJointsStand) {
 }
 
 TEST(Scene, ReportsJointsBeyondEightOfAVertex) {
-  Asset asset = makeSample("stool");
-  AutoRigOptions options;
-  options.rig.handles = 3;
-  Progress progress;
-  autoRig(asset, options, progress);
+  Asset asset = testing::riggedStool();
   EXPECT_EQ(testing::countOf(makeScene(asset).warnings, "many-influences"), 0u);
   gltf::Attributes& attributes = asset.document.meshes.at(0).primitives.at(0).attributes;
   for (const char* set : {"_1", "_2"}) {
