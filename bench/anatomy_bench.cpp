@@ -3,7 +3,7 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
-#include "limber/anatomy/anatomy.h"
+#include "limber/character/anatomy/anatomy.h"
 
 namespace limber {
 namespace {

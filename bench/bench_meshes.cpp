@@ -6,8 +6,8 @@
 #include <map>
 #include <utility>
 
-#include "limber/core/numbers.h"
-#include "limber/figure/testing/figure_body.h"
+#include "limber/core/text/numbers.h"
+#include "limber/rigging/figure/testing/figure_body.h"
 
 namespace limber::bench {
 

@@ -1,7 +1,7 @@
 // Models of growing size for the benchmarks, made in code.
 #pragma once
 
-#include "limber/mesh/tri_mesh.h"
+#include "limber/geometry/mesh/tri_mesh.h"
 
 namespace limber::bench {
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "limber/asset/accessor.h"
-#include "limber/asset/write.h"
-#include "limber/core/numbers.h"
+#include "limber/core/text/numbers.h"
+#include "limber/document/gltf/accessor.h"
+#include "limber/document/write.h"
 
 namespace limber::bench {
 

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "limber/mesh/tri_mesh.h"
+#include "limber/geometry/mesh/tri_mesh.h"
 
 namespace limber::bench {
 

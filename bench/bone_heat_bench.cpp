@@ -9,13 +9,13 @@
 #include "bench_meshes.h"
 #include "limber/core/parallel.h"
 #include "limber/core/progress.h"
-#include "limber/mesh/bvh.h"
-#include "limber/mesh/components.h"
-#include "limber/mesh/laplacian.h"
-#include "limber/mesh/sparse_cholesky.h"
+#include "limber/geometry/mesh/bvh.h"
+#include "limber/geometry/mesh/components.h"
+#include "limber/geometry/solve/laplacian.h"
+#include "limber/geometry/solve/sparse_cholesky.h"
 #include "limber/rigging/auto_rigger.h"
-#include "limber/skinning/bone_heat.h"
-#include "limber/skinning/heat_sources.h"
+#include "limber/rigging/weights/bone_heat.h"
+#include "limber/rigging/weights/heat_sources.h"
 
 namespace limber::bench {
 

@@ -4,7 +4,7 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
-#include "limber/asset/bvh_read.h"
+#include "limber/document/bvh/bvh_read.h"
 
 namespace limber {
 namespace {

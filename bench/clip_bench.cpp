@@ -3,7 +3,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "limber/skeleton/clip_player.h"
+#include "limber/skeleton/clip/clip_player.h"
 
 namespace limber {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "limber/crowd/crowd.h"
-#include "limber/samples/sample_motions.h"
+#include "limber/samples/motions/sample_motions.h"
 #include "limber/samples/samples.h"
 
 namespace {

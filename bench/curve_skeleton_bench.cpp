@@ -2,9 +2,9 @@
 #include <benchmark/benchmark.h>
 
 #include "bench_meshes.h"
-#include "limber/curve_skeleton/contraction.h"
-#include "limber/curve_skeleton/curve_skeleton.h"
-#include "limber/curve_skeleton/even_surface.h"
+#include "limber/rigging/curve_skeleton/contraction.h"
+#include "limber/rigging/curve_skeleton/curve_skeleton.h"
+#include "limber/rigging/curve_skeleton/even_surface.h"
 
 namespace limber::bench {
 

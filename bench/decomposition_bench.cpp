@@ -6,10 +6,10 @@
 #include <benchmark/benchmark.h>
 
 #include "bench_meshes.h"
-#include "limber/decomposition/bone_weights.h"
-#include "limber/decomposition/motion_clusters.h"
-#include "limber/decomposition/motion_fit.h"
-#include "limber/decomposition/skin_decomposition.h"
+#include "limber/rigging/decomposition/bone_weights.h"
+#include "limber/rigging/decomposition/motion_clusters.h"
+#include "limber/rigging/decomposition/motion_fit.h"
+#include "limber/rigging/decomposition/skin_decomposition.h"
 
 namespace limber::bench {
 

@@ -7,11 +7,11 @@
 #include "bench_meshes.h"
 #include "limber/core/parallel.h"
 #include "limber/core/progress.h"
+#include "limber/deform/centers_of_rotation.h"
+#include "limber/deform/direct_delta_mush.h"
 #include "limber/rigging/auto_rigger.h"
+#include "limber/rigging/weights/weight_method.h"
 #include "limber/skeleton/pose.h"
-#include "limber/skinning/centers_of_rotation.h"
-#include "limber/skinning/direct_delta_mush.h"
-#include "limber/skinning/weight_method.h"
 
 namespace {
 

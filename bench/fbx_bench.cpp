@@ -3,12 +3,12 @@
 #include <benchmark/benchmark.h>
 
 #include "bench_models.h"
-#include "limber/asset/export_fbx.h"
-#include "limber/asset/mesh_asset.h"
-#include "limber/asset/read.h"
+#include "limber/actions/rig/auto_rig.h"
 #include "limber/core/progress.h"
-#include "limber/fbx/fbx_parse.h"
-#include "limber/pipeline/auto_rig.h"
+#include "limber/document/fbx/export_fbx.h"
+#include "limber/document/fbx/records/fbx_parse.h"
+#include "limber/document/mesh/mesh_asset.h"
+#include "limber/document/read.h"
 
 namespace limber {
 namespace {

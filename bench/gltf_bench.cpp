@@ -6,11 +6,11 @@
 #include <nlohmann/json.hpp>
 
 #include "bench_models.h"
-#include "limber/asset/glb.h"
-#include "limber/asset/json_text.h"
-#include "limber/asset/mesh_asset.h"
-#include "limber/asset/read.h"
-#include "limber/asset/write.h"
+#include "limber/document/gltf/glb.h"
+#include "limber/document/gltf/json_text.h"
+#include "limber/document/mesh/mesh_asset.h"
+#include "limber/document/read.h"
+#include "limber/document/write.h"
 
 namespace limber {
 namespace {

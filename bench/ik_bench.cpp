@@ -5,10 +5,10 @@
 #include <benchmark/benchmark.h>
 
 #include "limber/core/rotation.h"
-#include "limber/ik/ik_skeletons.h"
-#include "limber/ik/ik_solver.h"
-#include "limber/ik/ik_task.h"
-#include "limber/ik/two_bone.h"
+#include "limber/skeleton/ik/ik_skeletons.h"
+#include "limber/skeleton/ik/ik_solver.h"
+#include "limber/skeleton/ik/ik_task.h"
+#include "limber/skeleton/ik/solvers/two_bone.h"
 
 namespace limber {
 namespace {

@@ -12,9 +12,9 @@
 #include "bench_meshes.h"
 #include "bench_models.h"
 #include "limber/core/progress.h"
-#include "limber/mesh/prepare.h"
+#include "limber/geometry/mesh/prepare.h"
 #include "limber/rigging/auto_rigger.h"
-#include "limber/skinning/weight_method.h"
+#include "limber/rigging/weights/weight_method.h"
 
 namespace limber::bench {
 

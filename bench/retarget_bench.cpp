@@ -6,9 +6,9 @@
 #include <string>
 
 #include "limber/core/rotation.h"
-#include "limber/ik/ik_skeletons.h"
-#include "limber/retarget/motion_smoothing.h"
-#include "limber/retarget/retarget_clip.h"
+#include "limber/motion/retarget/motion_smoothing.h"
+#include "limber/motion/retarget/retarget_clip.h"
+#include "limber/skeleton/ik/ik_skeletons.h"
 
 namespace {
 

@@ -6,9 +6,9 @@
 #include <benchmark/benchmark.h>
 
 #include "bench_meshes.h"
-#include "limber/parts/part_caps.h"
-#include "limber/parts/shape_parts.h"
-#include "limber/parts/weight_parts.h"
+#include "limber/actions/parts/part_caps.h"
+#include "limber/actions/parts/shape_parts.h"
+#include "limber/actions/parts/weight_parts.h"
 
 namespace limber::bench {
 

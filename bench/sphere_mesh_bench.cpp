@@ -2,8 +2,8 @@
 #include <benchmark/benchmark.h>
 
 #include "bench_meshes.h"
+#include "limber/rigging/sphere_mesh/handle_tree.h"
 #include "limber/rigging/sphere_mesh_rigger.h"
-#include "limber/sphere_mesh/handle_tree.h"
 
 namespace limber::bench {
 

@@ -3,8 +3,8 @@
 
 #include "bench_meshes.h"
 #include "limber/core/progress.h"
-#include "limber/figure/figure_search.h"
-#include "limber/figure/testing/figure_body.h"
+#include "limber/rigging/figure/figure_search.h"
+#include "limber/rigging/figure/testing/figure_body.h"
 #include "limber/rigging/template_rigger.h"
 
 namespace limber::bench {

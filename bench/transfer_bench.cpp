@@ -6,7 +6,7 @@
 #include <string>
 
 #include "bench_meshes.h"
-#include "limber/transfer/rig_transfer.h"
+#include "limber/rigging/transfer/rig_transfer.h"
 
 namespace limber::bench {
 

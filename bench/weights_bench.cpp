@@ -7,7 +7,7 @@
 #include "bench_meshes.h"
 #include "limber/core/progress.h"
 #include "limber/rigging/auto_rigger.h"
-#include "limber/skinning/weight_method.h"
+#include "limber/rigging/weights/weight_method.h"
 
 namespace limber::bench {
 

@@ -1,24 +1,35 @@
-# limber_module(<folder> [USES <module>...] [PUBLIC <target>...] [PRIVATE <target>...] [TEST_LIBRARIES <target>...]
-#               [FUZZED])
+# limber_module(<name> [FOLDERS <folder>...] [USES <module>...] [PUBLIC <target>...] [PRIVATE <target>...]
+#               [TEST_LIBRARIES <target>...] [FUZZED])
 #
-# One folder below limber/ is one library target limber_<folder>, alias limber::<folder>. Every *.cpp beside the
-# CMakeLists.txt belongs to it, except *_test.cpp, which become the test program limber_<folder>_tests.
-# USES names the modules that this one may include from: a header of any other module is not found, so a wrong
-# dependency does not build (each module publishes its headers through its own include tree). FUZZED modules read what
-# fuzz targets feed them, and let libFuzzer see which way each input takes; this makes code two to three times as slow.
+# A folder below limber/ with the folders in it that FOLDERS names is one library target limber_<name>, alias
+# limber::<name>. Every *.cpp of these folders belongs to it, except *_test.cpp, which become the test program
+# limber_<name>_tests. USES names the modules that this one may include from: a header of any other module is not found,
+# so a wrong dependency does not build (each module publishes its headers through its own include tree). FUZZED modules
+# read what fuzz targets feed them, and let libFuzzer see which way each input takes; this makes code two to three times
+# as slow.
 function(limber_module name)
-  cmake_parse_arguments(ARG "FUZZED" "" "USES;PUBLIC;PRIVATE;TEST_LIBRARIES" ${ARGN})
-  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  cmake_parse_arguments(ARG "FUZZED" "" "FOLDERS;USES;PUBLIC;PRIVATE;TEST_LIBRARIES" ${ARGN})
+  set(folders . ${ARG_FOLDERS})
+  list(TRANSFORM folders APPEND "/*.cpp" OUTPUT_VARIABLE patterns)
+  list(TRANSFORM patterns PREPEND "${CMAKE_CURRENT_SOURCE_DIR}/")
+  file(GLOB sources CONFIGURE_DEPENDS ${patterns})
   set(tests ${sources})
   list(FILTER tests INCLUDE REGEX "_test\\.cpp$")
   list(FILTER sources EXCLUDE REGEX "_test\\.cpp$")
 
-  # The module's own include tree: build/.../include/<folder>/limber/<folder> -> source folder.
+  # The module's own include tree: build/.../include/<name>/limber/... has a link to each of its headers.
   set(tree ${PROJECT_BINARY_DIR}/include/${name})
-  file(MAKE_DIRECTORY ${tree}/limber)
-  if(NOT EXISTS ${tree}/limber/${name})
-    file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${tree}/limber/${name} SYMBOLIC)
-  endif()
+  foreach(folder IN LISTS folders)
+    file(GLOB headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*.h
+         ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/testing/*.h)
+    foreach(header IN LISTS headers)
+      get_filename_component(place ${tree}/${header} DIRECTORY)
+      file(MAKE_DIRECTORY ${place})
+      if(NOT EXISTS ${tree}/${header})
+        file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${header} ${tree}/${header} SYMBOLIC)
+      endif()
+    endforeach()
+  endforeach()
 
   set(target limber_${name})
   add_library(${target} STATIC ${sources})

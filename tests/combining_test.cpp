@@ -1,20 +1,20 @@
 // Shared walks and runs joined and blended on shared characters: feet and smoothness against those of the motions
-// themselves, by the judge's detector of rest (limber/evaluate/contact_oracle.h), which shares nothing with what plants
-// feet.
+// themselves, by the judge's detector of rest (limber/evaluate/motion/contact_oracle.h), which shares nothing with what
+// plants feet.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
 #include <gtest/gtest.h>
 
-#include "limber/asset/motion_io.h"
-#include "limber/asset/read.h"
-#include "limber/evaluate/contact_oracle.h"
-#include "limber/limbs/roughness.h"
-#include "limber/motion_mix/blend_motions.h"
-#include "limber/motion_mix/crossfade_motions.h"
-#include "limber/motion_mix/mix_motion.h"
-#include "limber/pipeline/retarget_asset.h"
+#include "limber/actions/motion/retarget_asset.h"
+#include "limber/document/clip/motion_io.h"
+#include "limber/document/read.h"
+#include "limber/evaluate/motion/contact_oracle.h"
+#include "limber/motion/limbs/roughness.h"
+#include "limber/motion/mix/blend_motions.h"
+#include "limber/motion/mix/crossfade_motions.h"
+#include "limber/motion/mix/mix_motion.h"
 #include "limber/skeleton/motion.h"
 #include "shared_data.h"
 

@@ -4,13 +4,13 @@
 
 #include <string>
 
-#include "limber/anatomy/testing/convention_bodies.h"
-#include "limber/asset/bvh_write.h"
-#include "limber/asset/export_fbx.h"
-#include "limber/asset/motion_io.h"
-#include "limber/asset/write.h"
-#include "limber/matching/skeleton_map.h"
-#include "limber/samples/sample_motions.h"
+#include "limber/character/anatomy/testing/convention_bodies.h"
+#include "limber/character/matching/skeleton_map.h"
+#include "limber/document/bvh/bvh_write.h"
+#include "limber/document/clip/motion_io.h"
+#include "limber/document/fbx/export_fbx.h"
+#include "limber/document/write.h"
+#include "limber/samples/motions/sample_motions.h"
 
 namespace limber::testing {
 

@@ -6,12 +6,12 @@
 
 #include <gtest/gtest.h>
 
-#include "limber/anatomy/humanoid_joints.h"
-#include "limber/asset/read.h"
-#include "limber/asset/rig_io.h"
-#include "limber/export/engine_target.h"
-#include "limber/export/testing/gltf_player.h"
-#include "limber/matching/skeleton_map.h"
+#include "limber/actions/export/engine_target.h"
+#include "limber/actions/export/testing/gltf_player.h"
+#include "limber/character/anatomy/names/humanoid_joints.h"
+#include "limber/character/matching/skeleton_map.h"
+#include "limber/document/read.h"
+#include "limber/document/rig/rig_io.h"
 #include "shared_data.h"
 #include "shared_people.h"
 

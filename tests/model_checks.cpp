@@ -9,10 +9,10 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "limber/asset/accessor.h"
-#include "limber/asset/testing/document_json.h"
-#include "limber/asset/write.h"
-#include "limber/mesh/prepare.h"
+#include "limber/document/gltf/accessor.h"
+#include "limber/document/testing/document_json.h"
+#include "limber/document/write.h"
+#include "limber/geometry/mesh/prepare.h"
 
 namespace limber::testing {
 

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "limber/asset/rig_io.h"
-#include "limber/pipeline/auto_rig.h"
+#include "limber/actions/rig/auto_rig.h"
+#include "limber/document/rig/rig_io.h"
 
 namespace limber::testing {
 

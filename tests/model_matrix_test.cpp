@@ -7,12 +7,12 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "limber/asset/read.h"
-#include "limber/asset/testing/document_json.h"
-#include "limber/asset/write.h"
+#include "limber/actions/rig/auto_rig.h"
 #include "limber/core/parallel.h"
-#include "limber/mesh/prepare.h"
-#include "limber/pipeline/auto_rig.h"
+#include "limber/document/read.h"
+#include "limber/document/testing/document_json.h"
+#include "limber/document/write.h"
+#include "limber/geometry/mesh/prepare.h"
 #include "limber/samples/samples.h"
 #include "model_checks.h"
 #include "shared_data.h"

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "limber/asset/motion_io.h"
-#include "limber/core/numbers.h"
-#include "limber/matching/plain_skeleton.h"
+#include "limber/character/matching/plain_skeleton.h"
+#include "limber/core/text/numbers.h"
+#include "limber/document/clip/motion_io.h"
 #include "retarget_measured.h"
 #include "shared_data.h"
 

@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "limber/asset/motion_io.h"
+#include "limber/character/matching/plain_skeleton.h"
+#include "limber/character/matching/skeleton_map.h"
 #include "limber/core/error.h"
-#include "limber/core/numbers.h"
-#include "limber/matching/plain_skeleton.h"
-#include "limber/matching/skeleton_map.h"
+#include "limber/core/text/numbers.h"
+#include "limber/document/clip/motion_io.h"
 #include "retarget_measured.h"
 #include "shared_data.h"
 

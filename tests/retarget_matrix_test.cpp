@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "limber/anatomy/anatomy.h"
-#include "limber/asset/motion_io.h"
-#include "limber/evaluate/motion_metrics.h"
-#include "limber/matching/plain_skeleton.h"
+#include "limber/character/anatomy/anatomy.h"
+#include "limber/character/matching/plain_skeleton.h"
+#include "limber/document/clip/motion_io.h"
+#include "limber/evaluate/motion/motion_metrics.h"
 #include "retarget_measured.h"
 #include "shared_data.h"
 #include "shared_people.h"

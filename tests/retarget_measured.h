@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "limber/evaluate/motion_metrics.h"
+#include "limber/evaluate/motion/motion_metrics.h"
 #include "limber/skeleton/chain.h"
 
 namespace limber::testing {

@@ -5,9 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include "limber/asset/pose_file.h"
-#include "limber/core/file.h"
-#include "limber/session/scene.h"
+#include "limber/core/file/file.h"
+#include "limber/document/clip/pose_file.h"
+#include "limber/session/scene/scene.h"
 #include "limber/skeleton/pose.h"
 #include "shared_data.h"
 #include "source_folder.h"

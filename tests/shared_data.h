@@ -12,7 +12,7 @@
 #include <system_error>
 #include <vector>
 
-#include "limber/core/names.h"
+#include "limber/core/text/names.h"
 #include "source_folder.h"
 
 namespace limber::testing {

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # How large the reading and the matching of bodies are, and how many of their numbers say nothing of themselves:
-#   tools/count_numbers.sh [FOLDER...]        (limber/anatomy and limber/matching)
+#   tools/count_numbers.sh [FOLDER...]        (limber/character/anatomy and limber/character/matching)
 # Lines of sources without tests and without what is generated; named constants without a comment behind them or on the
 # line above.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-[ $# -gt 0 ] || set -- limber/anatomy limber/matching
+[ $# -gt 0 ] || set -- limber/character/anatomy limber/character/matching
 
 files=$(git ls-files --cached --others --exclude-standard "$@" | grep -E '\.(h|cpp)$' | grep -vE '_test\.cpp$|/testing/|/part_weights\.cpp$')
 echo "lines: $(cat $files | wc -l)"

@@ -1,5 +1,5 @@
-// Fits the weights by which bodies are read (limber/anatomy/part_weights.cpp) to skeletons labelled by hand:
-//   limber_fit_anatomy LABELS.json... --data FOLDER --write limber/anatomy/part_weights.cpp
+// Fits the weights by which bodies are read (limber/character/anatomy/part_weights.cpp) to skeletons labelled by hand:
+//   limber_fit_anatomy LABELS.json... --data FOLDER --write limber/character/anatomy/part_weights.cpp
 // Maximum likelihood of the labels and axes given the skeletons, with a Gaussian prior on the weights, by stochastic
 // gradients (Adam: Kingma, Ba 2015); copies damaged as skeletons differ from maker to maker
 // (evaluate/labelled_skeleton.h), half of them without names. --folds N leaves every N-th group of skeletons out in
@@ -19,16 +19,16 @@
 
 #include <fmt/format.h>
 
-#include "limber/anatomy/body_reading.h"
-#include "limber/anatomy/testing/bodies.h"
-#include "limber/asset/motion_io.h"
+#include "limber/character/anatomy/body_reading.h"
+#include "limber/character/anatomy/testing/bodies.h"
 #include "limber/core/error.h"
-#include "limber/core/file.h"
-#include "limber/core/numbers.h"
+#include "limber/core/file/file.h"
 #include "limber/core/parallel.h"
 #include "limber/core/progress.h"
-#include "limber/evaluate/anatomy_table.h"
-#include "limber/evaluate/labelled_skeleton.h"
+#include "limber/core/text/numbers.h"
+#include "limber/document/clip/motion_io.h"
+#include "limber/evaluate/rig/anatomy_table.h"
+#include "limber/evaluate/rig/labelled_skeleton.h"
 
 using namespace limber;
 
@@ -441,7 +441,8 @@ void writeWeights(const PartWeights& weights, const std::string& file) {
   };
   std::ofstream(file) << fmt::format(
       "// Made by tools/fit_anatomy.cpp: the weights by which bodies are read. One character a weight, in tenths.\n"
-      "#include \"limber/anatomy/part_field.h\"\n\nnamespace limber {{\n\nnamespace {{\n\n// clang-format off\n"
+      "#include \"limber/character/anatomy/part_field.h\"\n\nnamespace limber {{\n\nnamespace {{\n\n// clang-format "
+      "off\n"
       "constexpr std::string_view kFeature =\n{};\nconstexpr std::string_view kFollow =\n{};\nconstexpr "
       "std::string_view kAxes =\n{};\n// clang-format on\n\n"
       "std::vector<float> unpacked(std::string_view text) {{\n  std::vector<float> weights;\n  "

@@ -1,4 +1,4 @@
-// Fits the proportions of people (limber/templates/humanoid_landmarks.h) to characters whose joints have names:
+// Fits the proportions of people (limber/rigging/templates/humanoid_landmarks.h) to characters whose joints have names:
 //   limber_fit_template FILE...
 // Coordinate descent on the mean distance of named joints, in percent of the height. Files of one maker often share a
 // skeleton, so each maker (a name's part before the first '_') is also left out once: what the others' fit does on its
@@ -14,16 +14,16 @@
 
 #include <fmt/format.h>
 
-#include "limber/anatomy/humanoid_joints.h"
-#include "limber/asset/geometry.h"
-#include "limber/asset/read.h"
-#include "limber/asset/rig_io.h"
+#include "limber/character/anatomy/names/humanoid_joints.h"
 #include "limber/core/parallel.h"
-#include "limber/evaluate/skinned_model.h"
-#include "limber/mesh/prepare.h"
+#include "limber/document/read.h"
+#include "limber/document/rig/rig_io.h"
+#include "limber/document/scene/geometry.h"
+#include "limber/evaluate/skin/skinned_model.h"
+#include "limber/geometry/mesh/prepare.h"
 #include "limber/rigging/template_rigger.h"
-#include "limber/templates/humanoid_landmarks.h"
-#include "limber/templates/joints_between.h"
+#include "limber/rigging/templates/humanoid_landmarks.h"
+#include "limber/rigging/templates/joints_between.h"
 
 using namespace limber;
 

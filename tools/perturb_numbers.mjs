@@ -1,7 +1,7 @@
 // Which named numbers of retargeting change nothing when they are 20 % less or more: dead ones, and bounds that nothing
 // meets.
 //
-//   node tools/perturb_numbers.mjs [FOLDER...]        (limber/limbs and limber/retarget)
+//   node tools/perturb_numbers.mjs [FOLDER...]        (limber/motion/limbs and limber/motion/retarget)
 //
 // Copies the checkout to build/perturbed, where each `constexpr double kName = ...` of the folders (and int, float and
 // the like; not in tests) reads its factor from the environment, and builds the program there. Then the judge
@@ -17,7 +17,7 @@ import { fileURLToPath } from 'node:url';
 import { promisify } from 'node:util';
 
 process.chdir(fileURLToPath(new URL('..', import.meta.url)));
-const folders = process.argv.length > 2 ? process.argv.slice(2) : ['limber/limbs', 'limber/retarget'];
+const folders = process.argv.length > 2 ? process.argv.slice(2) : ['limber/motion/limbs', 'limber/motion/retarget'];
 const shared = process.env.LIMBER_SHARED_DATA ?? '../shared/data';
 const copy = 'build/perturbed', program = resolve(copy, 'build/release/limber');
 

@@ -6,14 +6,14 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "limber/asset/json_text.h"
-#include "limber/asset/read.h"
+#include "limber/actions/export/write_model.h"
+#include "limber/actions/obj_series.h"
+#include "limber/actions/report_json.h"
+#include "limber/actions/rig/rig_from_animation.h"
 #include "limber/core/counted.h"
-#include "limber/core/names.h"
-#include "limber/export/write_model.h"
-#include "limber/pipeline/obj_series.h"
-#include "limber/pipeline/report_json.h"
-#include "limber/pipeline/rig_from_animation.h"
+#include "limber/core/text/names.h"
+#include "limber/document/gltf/json_text.h"
+#include "limber/document/read.h"
 #include "progress_line.h"
 
 namespace limber::cli {

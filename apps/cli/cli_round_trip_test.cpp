@@ -8,15 +8,15 @@
 
 #include <fmt/format.h>
 
-#include "limber/asset/motion_io.h"
-#include "limber/asset/read.h"
-#include "limber/asset/testing/npy_bytes.h"
-#include "limber/asset/testing/stored_zip.h"
-#include "limber/asset/write.h"
-#include "limber/export/testing/gltf_player.h"
-#include "limber/samples/sample_motions.h"
-#include "limber/skeleton/clip_edit.h"
-#include "limber/vrm/testing/avatars.h"
+#include "limber/actions/export/testing/gltf_player.h"
+#include "limber/document/clip/motion_io.h"
+#include "limber/document/read.h"
+#include "limber/document/testing/npy_bytes.h"
+#include "limber/document/testing/stored_zip.h"
+#include "limber/document/vrm/testing/avatars.h"
+#include "limber/document/write.h"
+#include "limber/samples/motions/sample_motions.h"
+#include "limber/skeleton/clip/clip_edit.h"
 #include "testing/cli_fixture.h"
 
 namespace limber {

@@ -1,9 +1,9 @@
 // Motions in SMPL's form, through the program itself.
 #include <string>
 
-#include "limber/asset/testing/npy_bytes.h"
-#include "limber/asset/testing/stored_zip.h"
 #include "limber/core/types.h"
+#include "limber/document/testing/npy_bytes.h"
+#include "limber/document/testing/stored_zip.h"
 #include "testing/cli_fixture.h"
 
 namespace limber {

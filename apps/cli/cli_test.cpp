@@ -8,8 +8,8 @@
 #include <thread>
 #include <vector>
 
-#include "limber/asset/testing/gltf_builder.h"
 #include "limber/core/sanitizers.h"
+#include "limber/document/testing/gltf_builder.h"
 #include "testing/cli_fixture.h"
 
 namespace limber {

@@ -6,7 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "command.h"
-#include "limber/pipeline/clip_edits.h"
+#include "limber/actions/motion/clip_edits.h"
 
 namespace limber::cli {
 

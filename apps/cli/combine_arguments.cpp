@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "command.h"
-#include "limber/core/parse_number.h"
+#include "limber/core/text/parse_number.h"
 
 namespace limber::cli {
 

@@ -6,7 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "limber/pipeline/combine_motions.h"
+#include "limber/actions/motion/combine_motions.h"
 
 namespace limber::cli {
 

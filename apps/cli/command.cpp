@@ -8,10 +8,10 @@
 #include <fmt/format.h>
 
 #include "limber/core/counted.h"
-#include "limber/core/names.h"
+#include "limber/core/file/storage_error.h"
 #include "limber/core/parallel.h"
-#include "limber/core/printable.h"
-#include "limber/core/storage_error.h"
+#include "limber/core/text/names.h"
+#include "limber/core/text/printable.h"
 
 namespace limber::cli {
 

@@ -7,8 +7,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include "limber/asset/asset.h"
 #include "limber/core/progress.h"
+#include "limber/document/asset.h"
 
 namespace limber::cli {
 

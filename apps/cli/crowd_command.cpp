@@ -6,12 +6,12 @@
 #include <fmt/format.h>
 
 #include "command.h"
-#include "limber/asset/motion_io.h"
-#include "limber/asset/read.h"
+#include "limber/actions/export/write_model.h"
 #include "limber/core/counted.h"
-#include "limber/core/folder.h"
+#include "limber/core/file/folder.h"
 #include "limber/crowd/crowd.h"
-#include "limber/export/write_model.h"
+#include "limber/document/clip/motion_io.h"
+#include "limber/document/read.h"
 #include "motion_arguments.h"
 #include "progress_line.h"
 

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "limber/skinning/deformer.h"
+#include "limber/deform/deformer.h"
 
 namespace limber::cli {
 

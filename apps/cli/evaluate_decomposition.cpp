@@ -3,8 +3,8 @@
 #include <memory>
 
 #include "command.h"
-#include "limber/evaluate/decomposition_table.h"
-#include "limber/pipeline/vertex_animation.h"
+#include "limber/actions/motion/vertex_animation.h"
+#include "limber/evaluate/rig/decomposition_table.h"
 #include "progress_line.h"
 
 namespace limber::cli {

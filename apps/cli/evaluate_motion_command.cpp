@@ -5,15 +5,15 @@
 #include <fmt/format.h>
 
 #include "command.h"
-#include "limber/asset/motion_io.h"
-#include "limber/asset/read.h"
-#include "limber/core/file.h"
-#include "limber/evaluate/judge_table.h"
-#include "limber/evaluate/retarget_table.h"
-#include "limber/evaluate/skinned_model.h"
-#include "limber/matching/plain_skeleton.h"
-#include "limber/matching/rest_form.h"
-#include "limber/pipeline/stand_upright.h"
+#include "limber/actions/rig/stand_upright.h"
+#include "limber/character/matching/plain_skeleton.h"
+#include "limber/character/matching/rest_form.h"
+#include "limber/core/file/file.h"
+#include "limber/document/clip/motion_io.h"
+#include "limber/document/read.h"
+#include "limber/evaluate/motion/judge_table.h"
+#include "limber/evaluate/motion/retarget_table.h"
+#include "limber/evaluate/skin/skinned_model.h"
 #include "progress_line.h"
 
 namespace limber::cli {

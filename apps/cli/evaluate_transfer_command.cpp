@@ -2,8 +2,8 @@
 #include <filesystem>
 
 #include "command.h"
-#include "limber/evaluate/transfer_table.h"
-#include "limber/pipeline/transfer_asset.h"
+#include "limber/actions/transfer/transfer_asset.h"
+#include "limber/evaluate/skin/transfer_table.h"
 #include "progress_line.h"
 
 namespace limber::cli {

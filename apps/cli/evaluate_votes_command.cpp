@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "command.h"
-#include "limber/asset/json_text.h"
-#include "limber/study/vote_ranking.h"
+#include "limber/document/gltf/json_text.h"
+#include "limber/study/ranking/vote_ranking.h"
 #include "vote_files.h"
 
 namespace limber::cli {

@@ -5,7 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "limber/export/write_model.h"
+#include "limber/actions/export/write_model.h"
 
 namespace limber::cli {
 

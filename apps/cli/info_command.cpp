@@ -4,11 +4,11 @@
 #include <nlohmann/json.hpp>
 
 #include "command.h"
-#include "limber/anatomy/naming_convention.h"
-#include "limber/asset/json_text.h"
-#include "limber/asset/read.h"
+#include "limber/character/anatomy/names/naming_convention.h"
 #include "limber/core/counted.h"
-#include "limber/core/printable.h"
+#include "limber/core/text/printable.h"
+#include "limber/document/gltf/json_text.h"
+#include "limber/document/read.h"
 #include "limber/evaluate/asset_info.h"
 
 namespace limber::cli {

@@ -12,11 +12,11 @@
 #include <fmt/format.h>
 
 #include "command.h"
+#include "limber/actions/option_spelling.h"
 #include "limber/batch/batch_plan.h"
+#include "limber/core/file/storage_error.h"
 #include "limber/core/known_error.h"
-#include "limber/core/printable.h"
-#include "limber/core/storage_error.h"
-#include "limber/pipeline/option_spelling.h"
+#include "limber/core/text/printable.h"
 #include "progress_line.h"
 
 namespace {

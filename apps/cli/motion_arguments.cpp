@@ -1,7 +1,7 @@
 #include "motion_arguments.h"
 
-#include "limber/asset/smpl_arrays.h"
-#include "limber/asset/smpl_skeleton.h"
+#include "limber/document/smpl/smpl_arrays.h"
+#include "limber/document/smpl/smpl_skeleton.h"
 
 namespace limber::cli {
 

@@ -5,7 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "limber/asset/motion_io.h"
+#include "limber/document/clip/motion_io.h"
 
 namespace limber::cli {
 

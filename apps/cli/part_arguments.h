@@ -3,7 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "limber/parts/model_parts.h"
+#include "limber/actions/parts/model_parts.h"
 
 namespace limber::cli {
 

@@ -7,14 +7,14 @@
 #include <fmt/format.h>
 
 #include "command.h"
-#include "limber/asset/mesh_export.h"
-#include "limber/asset/read.h"
-#include "limber/asset/write.h"
+#include "limber/actions/parts/part_materials.h"
+#include "limber/actions/parts/part_meshes.h"
 #include "limber/core/counted.h"
-#include "limber/core/names.h"
-#include "limber/parts/part_materials.h"
-#include "limber/parts/part_meshes.h"
-#include "limber/preview/palette.h"
+#include "limber/core/text/names.h"
+#include "limber/document/mesh/mesh_export.h"
+#include "limber/document/read.h"
+#include "limber/document/write.h"
+#include "limber/preview/image/palette.h"
 #include "part_arguments.h"
 #include "progress_line.h"
 

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "limber/core/printable.h"
+#include "limber/core/text/printable.h"
 
 namespace limber::cli {
 

@@ -2,14 +2,14 @@
 #include <fmt/format.h>
 
 #include "command.h"
-#include "limber/asset/bvh_write.h"
-#include "limber/asset/motion_io.h"
-#include "limber/asset/write.h"
 #include "limber/core/counted.h"
-#include "limber/core/names.h"
-#include "limber/samples/sample_motions.h"
+#include "limber/core/text/names.h"
+#include "limber/document/bvh/bvh_write.h"
+#include "limber/document/clip/motion_io.h"
+#include "limber/document/write.h"
+#include "limber/samples/motions/sample_motions.h"
 #include "limber/samples/samples.h"
-#include "limber/session/scene.h"
+#include "limber/session/scene/scene.h"
 #include "progress_line.h"
 #include "sample_scenes.h"
 

@@ -6,11 +6,11 @@
 #include <fmt/format.h>
 
 #include "command.h"
-#include "limber/asset/read.h"
-#include "limber/asset/stored_archive.h"
 #include "limber/core/counted.h"
-#include "limber/core/file.h"
-#include "limber/session/scene.h"
+#include "limber/core/file/file.h"
+#include "limber/document/read.h"
+#include "limber/document/stored_archive.h"
+#include "limber/session/scene/scene.h"
 #include "progress_line.h"
 
 namespace limber::cli {

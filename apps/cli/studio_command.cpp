@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "command.h"
-#include "limber/core/printable.h"
+#include "limber/core/text/printable.h"
 #include "studio/qr_code.h"
 #include "studio/server.h"
 

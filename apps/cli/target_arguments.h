@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
-#include "limber/export/engine_target.h"
+#include "limber/actions/export/engine_target.h"
 
 namespace limber::cli {
 

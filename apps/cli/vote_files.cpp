@@ -1,6 +1,6 @@
 #include "vote_files.h"
 
-#include "limber/core/file.h"
+#include "limber/core/file/file.h"
 #include "limber/core/known_error.h"
 
 namespace limber::cli {

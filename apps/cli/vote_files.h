@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "limber/study/ballot.h"
+#include "limber/study/ranking/ballot.h"
 
 namespace limber::cli {
 

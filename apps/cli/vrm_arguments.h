@@ -1,7 +1,7 @@
 // What limber is told of a VRM that it writes.
 #pragma once
 
-#include "limber/vrm/vrm_meta.h"
+#include "limber/document/vrm/vrm_meta.h"
 
 namespace CLI {
 class App;

@@ -5,13 +5,13 @@
 #include <fmt/format.h>
 
 #include "command.h"
-#include "limber/asset/clip_io.h"
-#include "limber/asset/motion_io.h"
-#include "limber/asset/write.h"
+#include "limber/character/matching/rest_form.h"
 #include "limber/core/counted.h"
-#include "limber/matching/rest_form.h"
-#include "limber/vrm/hang_bones.h"
-#include "limber/vrm/vrm_bones.h"
+#include "limber/document/clip/clip_io.h"
+#include "limber/document/clip/motion_io.h"
+#include "limber/document/vrm/hang_bones.h"
+#include "limber/document/vrm/vrm_bones.h"
+#include "limber/document/write.h"
 
 namespace limber::cli {
 

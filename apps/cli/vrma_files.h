@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <vector>
 
-#include "limber/asset/asset.h"
+#include "limber/document/asset.h"
+#include "limber/document/vrm/vrma_write.h"
 #include "limber/skeleton/motion.h"
-#include "limber/vrm/vrma_write.h"
 
 namespace limber::cli {
 

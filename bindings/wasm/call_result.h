@@ -8,9 +8,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "limber/asset/json_text.h"
+#include "limber/actions/option_spelling.h"
 #include "limber/core/known_error.h"
-#include "limber/pipeline/option_spelling.h"
+#include "limber/document/gltf/json_text.h"
 
 #define LIMBER_EXPORT extern "C" __attribute__((used, visibility("default")))
 

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "call_result.h"
-#include "limber/asset/read.h"
 #include "limber/crowd/crowd_frames.h"
+#include "limber/document/read.h"
 #include "limber/session/rigged_model.h"
 #include "surface_bytes.h"
 

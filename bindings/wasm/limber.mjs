@@ -14,7 +14,7 @@
 import createEngine from './limber_engine.mjs';
 
 /**
- * As limber/pipeline/rig_request.h has them. template: auto, a name, or a file with a skeleton (.json, .glb, .bvh, ...), by
+ * As limber/actions/rig/rig_request.h has them. template: auto, a name, or a file with a skeleton (.json, .glb, .bvh, ...), by
  * its name and content; pins: where joints of a template must be, in world space.
  * @typedef {'x' | '+x' | '-x' | 'y' | '+y' | '-y' | 'z' | '+z' | '-z'} Axis
  * @typedef {{ handles?: number, maxInfluences?: number, rigger?: string, template?: string | { name: string, bytes: Uint8Array },
@@ -96,7 +96,7 @@ import createEngine from './limber_engine.mjs';
  *             materials: { name: string, color: [number, number, number, number], texture: number | null }[],
  *             textures: Uint8Array[], deformation: Deformation }} SurfaceModel four influences for each vertex; the files of the textures
  *
- * How the surface bends in drawing: by its weights (linear blend); as the rows say (DeformRows in limber/skinning/deformer.h);
+ * How the surface bends in drawing: by its weights (linear blend); as the rows say (DeformRows in limber/deform/deformer.h);
  * or as the engine gives it in posed() for each frame. ranges: of each vertex its first entry and how many there are; entries:
  * 20 numbers each, the joints and their moments.
  * @typedef {{ form: 'weights' } | { form: 'engine' }
@@ -324,7 +324,7 @@ function createSession(engine, handle = engine._limber_session_new()) {
     /** The rig of another model, or of a body in SMPL's layout (.npz), as the command transfer_rig.
      *  @type {(file: Uint8Array, name: string) => StepResult} */
     transferRig: (file, name) => step(call(engine, engine._limber_session_transfer_rig, [handle], file, name)),
-    /** A motion that comes live, as the program sends it (limber/asset/live_text.h): its skeleton, then its frames. Nothing of it is
+    /** A motion that comes live, as the program sends it (limber/document/live/live_text.h): its skeleton, then its frames. Nothing of it is
      *  recorded, and the next command ends it. @type {(skeleton: string) => { ok: true } | Failure} */
     liveBegin: (skeleton) => call(engine, engine._limber_session_live_begin, [handle], skeleton),
     /** Seven numbers for each of its joints, at a moment in seconds.
@@ -426,7 +426,7 @@ function createSession(engine, handle = engine._limber_session_new()) {
     /** What was done since a model was opened, as a list that `limber session replay` runs.
      *  @type {() => { limber_commands: number, commands: Command[] }} */
     record: () => call(engine, engine._limber_session_record, [handle]).account,
-    /** Figures by which methods are compared: limber/session/measures.h.
+    /** Figures by which methods are compared: limber/session/drag/measures.h.
      *  @type {() => { ok: true, measures: Measures } | Failure} */
     measures: () => {
       const result = call(engine, engine._limber_session_measures, [handle]);

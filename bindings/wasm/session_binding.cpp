@@ -5,17 +5,17 @@
 #include <memory>
 
 #include "call_result.h"
-#include "limber/asset/bvh_write.h"
-#include "limber/asset/json_text.h"
-#include "limber/asset/live_text.h"
-#include "limber/asset/mesh_export.h"
-#include "limber/session/clip_curves.h"
-#include "limber/session/measures.h"
-#include "limber/session/scene.h"
-#include "limber/session/scene_state.h"
-#include "limber/session/surface_parts.h"
-#include "limber/skeleton/keyframes.h"
-#include "limber/skinning/direct_delta_mush.h"
+#include "limber/deform/direct_delta_mush.h"
+#include "limber/document/bvh/bvh_write.h"
+#include "limber/document/gltf/json_text.h"
+#include "limber/document/live/live_text.h"
+#include "limber/document/mesh/mesh_export.h"
+#include "limber/session/drag/measures.h"
+#include "limber/session/drag/surface_parts.h"
+#include "limber/session/edit/clip_curves.h"
+#include "limber/session/scene/scene.h"
+#include "limber/session/scene/scene_state.h"
+#include "limber/skeleton/clip/keys/keyframes.h"
 #include "page_progress.h"
 #include "surface_bytes.h"
 
@@ -336,7 +336,8 @@ LIMBER_EXPORT CallResult* limber_session_transfer_rig(SessionHandle* handle, con
   });
 }
 
-// A motion that comes live: its skeleton as limber/asset/live_text.h has it, then seven numbers for each of its joints.
+// A motion that comes live: its skeleton as limber/document/live/live_text.h has it, then seven numbers for each of its
+// joints.
 LIMBER_EXPORT CallResult* limber_session_live_begin(SessionHandle* handle, const char* skeleton, std::size_t size) {
   return guarded({}, [&]() -> CallResult {
     handle->scene.beginLive(limber::liveSkeletonFrom({skeleton, size}));

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "call_result.h"
-#include "limber/asset/mesh_export.h"
+#include "limber/document/mesh/mesh_export.h"
 #include "limber/session/rigged_model.h"
 
 namespace limber::wasm {

@@ -12,9 +12,9 @@
 #include <nlohmann/json.hpp>
 
 #include "limber/adapters/job_limits.h"
-#include "limber/asset/json_access.h"
-#include "limber/asset/json_keys.h"
-#include "limber/asset/json_text.h"
+#include "limber/document/gltf/json_access.h"
+#include "limber/document/gltf/json_keys.h"
+#include "limber/document/gltf/json_text.h"
 
 namespace limber {
 

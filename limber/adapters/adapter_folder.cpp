@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <system_error>
 
-#include "limber/core/file.h"
+#include "limber/core/file/file.h"
 
 namespace limber {
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "limber/adapters/adapter.h"
-#include "limber/core/file.h"
-#include "limber/mesh/tri_mesh.h"
+#include "limber/core/file/file.h"
+#include "limber/geometry/mesh/tri_mesh.h"
 #include "limber/skeleton/skin_weights.h"
 
 namespace limber {

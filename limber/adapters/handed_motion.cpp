@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 
 #include "limber/adapters/handed_model.h"
-#include "limber/asset/bvh_write.h"
-#include "limber/asset/unique_names.h"
-#include "limber/skeleton/clip_edit.h"
+#include "limber/document/bvh/bvh_write.h"
+#include "limber/document/unique_names.h"
+#include "limber/skeleton/clip/clip_edit.h"
 
 namespace limber {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "limber/adapters/adapter.h"
-#include "limber/core/file.h"
+#include "limber/core/file/file.h"
 #include "limber/skeleton/motion.h"
 
 namespace limber {

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "limber/asset/json_keys.h"
+#include "limber/document/gltf/json_keys.h"
 
 namespace limber {
 

@@ -1,7 +1,7 @@
 // Limits of a job in a file of the user's: an adapter, a plan of a study.
 #pragma once
 
-#include "limber/asset/json_access.h"
+#include "limber/document/gltf/json_access.h"
 #include "limber/jobs/job.h"
 
 namespace limber {

@@ -13,10 +13,10 @@
 
 #include <fmt/format.h>
 
-#include "limber/asset/utf8.h"
 #include "limber/core/error.h"
-#include "limber/core/folder.h"
-#include "limber/core/split_text.h"
+#include "limber/core/file/folder.h"
+#include "limber/core/text/split_text.h"
+#include "limber/document/utf8.h"
 #include "limber/jobs/job_pool.h"
 #include "limber/jobs/last_line.h"
 

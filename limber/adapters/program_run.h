@@ -4,7 +4,7 @@
 #include <string>
 
 #include "limber/adapters/adapter.h"
-#include "limber/core/file.h"
+#include "limber/core/file/file.h"
 #include "limber/core/progress.h"
 
 namespace limber {

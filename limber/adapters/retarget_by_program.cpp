@@ -4,16 +4,16 @@
 
 #include <fmt/format.h>
 
+#include "limber/actions/rig/stand_upright.h"
 #include "limber/adapters/handed_motion.h"
 #include "limber/adapters/program_run.h"
 #include "limber/adapters/returned_motion.h"
-#include "limber/asset/bvh_read.h"
-#include "limber/asset/clip_io.h"
-#include "limber/asset/motion_io.h"
+#include "limber/character/matching/motion_bodies.h"
+#include "limber/character/matching/plain_skeleton.h"
 #include "limber/core/error.h"
-#include "limber/matching/motion_bodies.h"
-#include "limber/matching/plain_skeleton.h"
-#include "limber/pipeline/stand_upright.h"
+#include "limber/document/bvh/bvh_read.h"
+#include "limber/document/clip/clip_io.h"
+#include "limber/document/clip/motion_io.h"
 
 namespace limber {
 

@@ -3,9 +3,9 @@
 
 #include <vector>
 
+#include "limber/actions/motion/retarget_asset.h"
 #include "limber/adapters/adapter.h"
 #include "limber/core/progress.h"
-#include "limber/pipeline/retarget_asset.h"
 #include "limber/skeleton/motion.h"
 
 namespace limber {

@@ -10,12 +10,12 @@
 #include <functional>
 
 #include "limber/adapters/handed_motion.h"
-#include "limber/asset/clip_io.h"
-#include "limber/asset/mesh_asset.h"
-#include "limber/asset/motion_io.h"
-#include "limber/asset/write.h"
-#include "limber/core/numbers.h"
-#include "limber/skeleton/clip_edit.h"
+#include "limber/core/text/numbers.h"
+#include "limber/document/clip/clip_io.h"
+#include "limber/document/clip/motion_io.h"
+#include "limber/document/mesh/mesh_asset.h"
+#include "limber/document/write.h"
+#include "limber/skeleton/clip/clip_edit.h"
 #include "temporary_folder.h"
 #include "testing/made_body.h"
 

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "limber/adapters/space_check.h"
-#include "limber/asset/bvh_read.h"
+#include "limber/document/bvh/bvh_read.h"
 #include "limber/skeleton/chain.h"
 
 namespace limber {

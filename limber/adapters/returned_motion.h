@@ -4,7 +4,7 @@
 #include "limber/adapters/adapter.h"
 #include "limber/adapters/program_run.h"
 #include "limber/core/error.h"
-#include "limber/retarget/retarget_clip.h"
+#include "limber/motion/retarget/retarget_clip.h"
 
 namespace limber {
 

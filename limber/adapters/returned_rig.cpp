@@ -8,13 +8,13 @@
 
 #include "limber/adapters/rignet_text.h"
 #include "limber/adapters/space_check.h"
-#include "limber/asset/read.h"
-#include "limber/asset/rig_io.h"
 #include "limber/core/counted.h"
 #include "limber/core/known_error.h"
 #include "limber/core/parallel.h"
-#include "limber/mesh/bvh.h"
-#include "limber/transfer/weight_projection.h"
+#include "limber/document/read.h"
+#include "limber/document/rig/rig_io.h"
+#include "limber/geometry/mesh/bvh.h"
+#include "limber/rigging/transfer/weight_projection.h"
 
 namespace limber {
 

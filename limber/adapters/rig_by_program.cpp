@@ -5,17 +5,17 @@
 
 #include <fmt/format.h>
 
+#include "limber/actions/rig/figure_geometry.h"
+#include "limber/actions/rig/figure_to_rig.h"
+#include "limber/actions/rig/left_out_weights.h"
 #include "limber/adapters/returned_rig.h"
-#include "limber/asset/geometry.h"
-#include "limber/asset/mesh_asset.h"
-#include "limber/asset/rest_pose.h"
-#include "limber/asset/rig_io.h"
-#include "limber/asset/write.h"
 #include "limber/core/known_error.h"
-#include "limber/mesh/prepare.h"
-#include "limber/pipeline/figure_geometry.h"
-#include "limber/pipeline/figure_to_rig.h"
-#include "limber/pipeline/left_out_weights.h"
+#include "limber/document/mesh/mesh_asset.h"
+#include "limber/document/rig/rest_pose.h"
+#include "limber/document/rig/rig_io.h"
+#include "limber/document/scene/geometry.h"
+#include "limber/document/write.h"
+#include "limber/geometry/mesh/prepare.h"
 
 namespace limber {
 

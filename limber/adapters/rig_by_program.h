@@ -1,8 +1,8 @@
 // autoRig's counterpart for programs of the user's: what they give is attached to the untouched model.
 #pragma once
 
+#include "limber/actions/rig/auto_rig.h"
 #include "limber/adapters/adapter.h"
-#include "limber/pipeline/auto_rig.h"
 
 namespace limber {
 

@@ -8,12 +8,12 @@
 #include <filesystem>
 #include <numeric>
 
-#include "limber/asset/accessor.h"
-#include "limber/asset/mesh_asset.h"
-#include "limber/asset/read.h"
-#include "limber/asset/testing/scene_builder.h"
+#include "limber/actions/testing/elsewhere_skin.h"
 #include "limber/core/random.h"
-#include "limber/pipeline/testing/elsewhere_skin.h"
+#include "limber/document/gltf/accessor.h"
+#include "limber/document/mesh/mesh_asset.h"
+#include "limber/document/read.h"
+#include "limber/document/testing/scene_builder.h"
 #include "temporary_folder.h"
 #include "testing/fbx_text.h"
 #include "testing/made_body.h"

@@ -10,9 +10,9 @@
 
 #include <fmt/format.h>
 
-#include "limber/asset/utf8.h"
-#include "limber/core/parse_number.h"
-#include "limber/core/split_text.h"
+#include "limber/core/text/parse_number.h"
+#include "limber/core/text/split_text.h"
+#include "limber/document/utf8.h"
 
 namespace limber {
 

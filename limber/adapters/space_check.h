@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "limber/core/types.h"
-#include "limber/mesh/tri_mesh.h"
+#include "limber/geometry/mesh/tri_mesh.h"
 #include "limber/skeleton/skin_weights.h"
 
 namespace limber {

@@ -10,13 +10,13 @@
 #include <nlohmann/json.hpp>
 
 #include "limber/adapters/job_limits.h"
-#include "limber/asset/json_access.h"
-#include "limber/asset/json_keys.h"
-#include "limber/asset/json_text.h"
-#include "limber/asset/utf8.h"
 #include "limber/batch/path_pattern.h"
-#include "limber/core/list_lines.h"
-#include "limber/core/names.h"
+#include "limber/core/text/list_lines.h"
+#include "limber/core/text/names.h"
+#include "limber/document/gltf/json_access.h"
+#include "limber/document/gltf/json_keys.h"
+#include "limber/document/gltf/json_text.h"
+#include "limber/document/utf8.h"
 #include "limber/study/study_input.h"
 
 namespace limber {

@@ -14,11 +14,11 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "limber/asset/json_access.h"
-#include "limber/asset/json_text.h"
-#include "limber/asset/utf8.h"
 #include "limber/core/error.h"
-#include "limber/core/names.h"
+#include "limber/core/text/names.h"
+#include "limber/document/gltf/json_access.h"
+#include "limber/document/gltf/json_text.h"
+#include "limber/document/utf8.h"
 
 namespace limber {
 

@@ -7,7 +7,7 @@
 #include "limber/batch/batch_run.h"
 #include "limber/batch/batch_task.h"
 #include "limber/core/error.h"
-#include "limber/core/file.h"
+#include "limber/core/file/file.h"
 
 namespace limber {
 

@@ -6,8 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "limber/asset/json_access.h"
-#include "limber/asset/json_text.h"
+#include "limber/document/gltf/json_access.h"
+#include "limber/document/gltf/json_text.h"
 #include "limber/jobs/job_key.h"
 #include "limber/jobs/sha256.h"
 

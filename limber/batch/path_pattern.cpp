@@ -1,6 +1,6 @@
 #include "limber/batch/path_pattern.h"
 
-#include "limber/core/folder.h"
+#include "limber/core/file/folder.h"
 
 namespace limber {
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "limber/core/numbers.h"
+#include "limber/core/text/numbers.h"
 #include "limber/core/types.h"
 
 namespace limber {

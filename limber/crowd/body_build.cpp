@@ -6,12 +6,12 @@
 #include <optional>
 #include <vector>
 
-#include "limber/anatomy/body_part.h"
-#include "limber/asset/geometry.h"
-#include "limber/asset/node_edit.h"
-#include "limber/asset/rest_pose.h"
-#include "limber/asset/rig_io.h"
+#include "limber/character/anatomy/body_part.h"
 #include "limber/core/random.h"
+#include "limber/document/rig/rest_pose.h"
+#include "limber/document/rig/rig_io.h"
+#include "limber/document/scene/geometry.h"
+#include "limber/document/scene/node_edit.h"
 
 namespace limber {
 

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "limber/asset/asset.h"
+#include "limber/document/asset.h"
 
 namespace limber {
 

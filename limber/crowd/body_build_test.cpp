@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
-#include "limber/asset/geometry.h"
-#include "limber/asset/rig_io.h"
 #include "limber/core/error.h"
 #include "limber/crowd/testing/dragon.h"
+#include "limber/document/rig/rig_io.h"
+#include "limber/document/scene/geometry.h"
 
 namespace limber {
 namespace {

@@ -4,14 +4,14 @@
 #include <cmath>
 #include <utility>
 
-#include "limber/asset/clip_io.h"
-#include "limber/asset/geometry.h"
-#include "limber/asset/motion_io.h"
-#include "limber/asset/node_edit.h"
+#include "limber/actions/rig/stand_upright.h"
 #include "limber/crowd/crowd.h"
-#include "limber/pipeline/stand_upright.h"
-#include "limber/retarget/retarget_clip.h"
-#include "limber/skeleton/root_trajectory.h"
+#include "limber/document/clip/clip_io.h"
+#include "limber/document/clip/motion_io.h"
+#include "limber/document/scene/geometry.h"
+#include "limber/document/scene/node_edit.h"
+#include "limber/motion/retarget/retarget_clip.h"
+#include "limber/skeleton/clip/root_trajectory.h"
 
 namespace limber {
 

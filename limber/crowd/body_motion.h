@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "limber/asset/asset.h"
-#include "limber/skeleton/clip.h"
+#include "limber/document/asset.h"
+#include "limber/skeleton/clip/clip.h"
 
 namespace limber {
 

@@ -11,13 +11,6 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include "limber/asset/accessor.h"
-#include "limber/asset/accessor_layout.h"
-#include "limber/asset/accessor_sweep.h"
-#include "limber/asset/compact_buffers.h"
-#include "limber/asset/merge_assets.h"
-#include "limber/asset/node_edit.h"
-#include "limber/asset/scene_graph.h"
 #include "limber/core/counted.h"
 #include "limber/core/parallel.h"
 #include "limber/core/random.h"
@@ -25,6 +18,13 @@
 #include "limber/crowd/crowd_note.h"
 #include "limber/crowd/mixed_turns.h"
 #include "limber/crowd/shared_accessors.h"
+#include "limber/document/gltf/accessor.h"
+#include "limber/document/gltf/accessor_layout.h"
+#include "limber/document/gltf/accessor_sweep.h"
+#include "limber/document/gltf/compact_buffers.h"
+#include "limber/document/merge_assets.h"
+#include "limber/document/scene/node_edit.h"
+#include "limber/document/scene/scene_graph.h"
 
 namespace limber {
 

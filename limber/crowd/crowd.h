@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "limber/actions/motion/clip_edits.h"
+#include "limber/actions/motion/retarget_asset.h"
 #include "limber/core/progress.h"
 #include "limber/crowd/body_build.h"
-#include "limber/pipeline/clip_edits.h"
-#include "limber/pipeline/retarget_asset.h"
 
 namespace limber {
 

@@ -8,13 +8,13 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "limber/asset/clip_io.h"
-#include "limber/asset/json_access.h"
-#include "limber/asset/node_edit.h"
-#include "limber/asset/rig_io.h"
-#include "limber/asset/scene_graph.h"
 #include "limber/core/error.h"
 #include "limber/crowd/crowd_note.h"
+#include "limber/document/clip/clip_io.h"
+#include "limber/document/gltf/json_access.h"
+#include "limber/document/rig/rig_io.h"
+#include "limber/document/scene/node_edit.h"
+#include "limber/document/scene/scene_graph.h"
 #include "limber/skeleton/pose.h"
 
 namespace limber {

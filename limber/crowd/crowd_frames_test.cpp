@@ -4,15 +4,15 @@
 
 #include <nlohmann/json.hpp>
 
-#include "limber/asset/geometry.h"
-#include "limber/asset/read.h"
-#include "limber/asset/rig_io.h"
-#include "limber/asset/write.h"
 #include "limber/core/error.h"
 #include "limber/crowd/crowd.h"
 #include "limber/crowd/testing/dragon_crowd.h"
 #include "limber/crowd/testing/moved_nodes.h"
-#include "limber/samples/sample_motions.h"
+#include "limber/document/read.h"
+#include "limber/document/rig/rig_io.h"
+#include "limber/document/scene/geometry.h"
+#include "limber/document/write.h"
+#include "limber/samples/motions/sample_motions.h"
 
 namespace limber {
 namespace {

@@ -5,16 +5,16 @@
 #include <cmath>
 #include <set>
 
-#include "limber/asset/accessor.h"
-#include "limber/asset/clip_io.h"
-#include "limber/asset/motion_io.h"
-#include "limber/asset/scene_graph.h"
-#include "limber/asset/write.h"
 #include "limber/core/parallel.h"
 #include "limber/crowd/testing/dragon_crowd.h"
 #include "limber/crowd/testing/moved_nodes.h"
-#include "limber/retarget/retarget_clip.h"
-#include "limber/samples/sample_motions.h"
+#include "limber/document/clip/clip_io.h"
+#include "limber/document/clip/motion_io.h"
+#include "limber/document/gltf/accessor.h"
+#include "limber/document/scene/scene_graph.h"
+#include "limber/document/write.h"
+#include "limber/motion/retarget/retarget_clip.h"
+#include "limber/samples/motions/sample_motions.h"
 
 namespace limber {
 namespace {

@@ -10,13 +10,13 @@
 
 #include <fmt/format.h>
 
-#include "limber/asset/read.h"
-#include "limber/core/folder.h"
-#include "limber/core/list_lines.h"
-#include "limber/core/names.h"
+#include "limber/actions/rig/stand_upright.h"
+#include "limber/core/file/folder.h"
+#include "limber/core/file/storage_error.h"
 #include "limber/core/parallel.h"
-#include "limber/core/storage_error.h"
-#include "limber/pipeline/stand_upright.h"
+#include "limber/core/text/list_lines.h"
+#include "limber/core/text/names.h"
+#include "limber/document/read.h"
 
 namespace limber {
 

@@ -2,13 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include "limber/asset/read.h"
-#include "limber/asset/write.h"
-#include "limber/core/file.h"
-#include "limber/core/storage_error.h"
+#include "limber/core/file/file.h"
+#include "limber/core/file/storage_error.h"
 #include "limber/crowd/body_build.h"
 #include "limber/crowd/testing/dragon.h"
-#include "limber/samples/sample_motions.h"
+#include "limber/document/read.h"
+#include "limber/document/write.h"
+#include "limber/samples/motions/sample_motions.h"
 #include "limber/samples/samples.h"
 #include "temporary_folder.h"
 

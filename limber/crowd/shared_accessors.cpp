@@ -5,7 +5,7 @@
 #include <functional>
 #include <string_view>
 
-#include "limber/asset/accessor_layout.h"
+#include "limber/document/gltf/accessor_layout.h"
 
 namespace limber {
 

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <unordered_map>
 
-#include "limber/asset/asset.h"
 #include "limber/core/types.h"
+#include "limber/document/asset.h"
 
 namespace limber {
 

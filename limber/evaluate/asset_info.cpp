@@ -5,13 +5,13 @@
 #include <set>
 #include <utility>
 
-#include "limber/asset/accessor.h"
-#include "limber/asset/geometry.h"
-#include "limber/asset/rest_pose.h"
-#include "limber/asset/rig_io.h"
-#include "limber/asset/shape_surface.h"
-#include "limber/mesh/components.h"
-#include "limber/mesh/prepare.h"
+#include "limber/document/gltf/accessor.h"
+#include "limber/document/rig/rest_pose.h"
+#include "limber/document/rig/rig_io.h"
+#include "limber/document/scene/geometry.h"
+#include "limber/document/scene/shape_surface.h"
+#include "limber/geometry/mesh/components.h"
+#include "limber/geometry/mesh/prepare.h"
 
 namespace limber {
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "limber/anatomy/anatomy.h"
-#include "limber/asset/asset.h"
+#include "limber/character/anatomy/anatomy.h"
 #include "limber/core/types.h"
+#include "limber/document/asset.h"
 
 namespace limber {
 

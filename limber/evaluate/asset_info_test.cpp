@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "limber/asset/accessor.h"
-#include "limber/asset/testing/two_bind_poses.h"
+#include "limber/document/gltf/accessor.h"
+#include "limber/document/testing/two_bind_poses.h"
 
 namespace limber {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "limber/core/folder.h"
+#include "limber/core/file/folder.h"
 
 namespace limber {
 

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "limber/core/error.h"
-#include "limber/core/file.h"
+#include "limber/core/file/file.h"
 
 namespace limber {
 namespace {

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <unordered_map>
 
-#include "limber/mesh/normals.h"
-#include "limber/mesh/tri_mesh.h"
+#include "limber/geometry/mesh/normals.h"
+#include "limber/geometry/mesh/tri_mesh.h"
 #include "limber/skeleton/skeleton.h"
 
 namespace limber {

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "limber/core/names.h"
+#include "limber/core/text/names.h"
 
 namespace limber {
 

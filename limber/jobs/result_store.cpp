@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "limber/core/error.h"
-#include "limber/core/file.h"
-#include "limber/core/folder.h"
+#include "limber/core/file/file.h"
+#include "limber/core/file/folder.h"
 
 namespace limber {
 

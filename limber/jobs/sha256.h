@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "limber/core/file.h"
+#include "limber/core/file/file.h"
 
 struct evp_md_ctx_st;
 

@@ -7,7 +7,7 @@
 
 #include "limber/core/progress.h"
 #include "limber/preview/render.h"
-#include "limber/skeleton/clip.h"
+#include "limber/skeleton/clip/clip.h"
 
 namespace limber {
 

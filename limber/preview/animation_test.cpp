@@ -2,11 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include "limber/asset/accessor.h"
-#include "limber/asset/clip_io.h"
-#include "limber/asset/motion_io.h"
-#include "limber/asset/pose_io.h"
 #include "limber/core/error.h"
+#include "limber/document/clip/clip_io.h"
+#include "limber/document/clip/motion_io.h"
+#include "limber/document/gltf/accessor.h"
+#include "limber/document/rig/pose_io.h"
 #include "limber/preview/testing/rigged_stool.h"
 #include "limber/samples/samples.h"
 

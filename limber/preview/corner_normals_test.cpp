@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "limber/core/numbers.h"
+#include "limber/core/text/numbers.h"
 
 namespace limber {
 namespace {

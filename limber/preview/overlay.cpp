@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "limber/core/error.h"
-#include "limber/evaluate/surface_stretch.h"
-#include "limber/mesh/areas.h"
-#include "limber/preview/palette.h"
+#include "limber/evaluate/skin/surface_stretch.h"
+#include "limber/geometry/mesh/areas.h"
+#include "limber/preview/image/palette.h"
 
 namespace limber {
 

@@ -3,7 +3,7 @@
 #include <map>
 #include <utility>
 
-#include "limber/preview/palette.h"
+#include "limber/preview/image/palette.h"
 
 namespace limber {
 

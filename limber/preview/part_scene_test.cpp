@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "limber/preview/palette.h"
+#include "limber/preview/image/palette.h"
 #include "limber/preview/render.h"
 
 namespace limber {

@@ -6,11 +6,11 @@
 #include <cstdio>
 
 #include "limber/core/error.h"
-#include "limber/core/numbers.h"
 #include "limber/core/parallel.h"
+#include "limber/core/text/numbers.h"
 #include "limber/preview/corner_normals.h"
+#include "limber/preview/image/palette.h"
 #include "limber/preview/overlay.h"
-#include "limber/preview/palette.h"
 #include "limber/preview/part_scene.h"
 #include "limber/preview/rasterizer.h"
 #include "limber/preview/studio_light.h"

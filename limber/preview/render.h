@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "limber/preview/camera.h"
-#include "limber/preview/image.h"
+#include "limber/preview/image/image.h"
 #include "limber/preview/scene.h"
 
 namespace limber {

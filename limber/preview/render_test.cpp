@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "limber/core/error.h"
-#include "limber/core/numbers.h"
 #include "limber/core/parallel.h"
-#include "limber/preview/palette.h"
+#include "limber/core/text/numbers.h"
+#include "limber/preview/image/palette.h"
 #include "limber/preview/shapes.h"
 
 namespace limber {

@@ -2,15 +2,15 @@
 
 #include <algorithm>
 
-#include "limber/asset/accessor.h"
-#include "limber/asset/geometry.h"
-#include "limber/asset/motion_io.h"
-#include "limber/asset/pose_io.h"
-#include "limber/asset/weight_attributes.h"
-#include "limber/preview/palette.h"
+#include "limber/document/clip/motion_io.h"
+#include "limber/document/gltf/accessor.h"
+#include "limber/document/rig/pose_io.h"
+#include "limber/document/rig/weight_attributes.h"
+#include "limber/document/scene/geometry.h"
+#include "limber/preview/image/palette.h"
 #include "limber/preview/scene_materials.h"
 #include "limber/preview/shapes.h"
-#include "limber/skeleton/clip.h"
+#include "limber/skeleton/clip/clip.h"
 
 namespace limber {
 

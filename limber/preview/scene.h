@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "limber/anatomy/anatomy.h"
+#include "limber/actions/pose/pose_asset.h"
+#include "limber/character/anatomy/anatomy.h"
 #include "limber/core/error.h"
-#include "limber/pipeline/pose_asset.h"
-#include "limber/preview/texture.h"
+#include "limber/preview/image/texture.h"
 #include "limber/skeleton/skin_weights.h"
 
 namespace limber {

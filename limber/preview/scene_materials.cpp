@@ -11,11 +11,11 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "limber/asset/accessor.h"
-#include "limber/asset/extensions.h"
-#include "limber/asset/images.h"
-#include "limber/asset/json_access.h"
-#include "limber/preview/image_decode.h"
+#include "limber/document/gltf/accessor.h"
+#include "limber/document/gltf/extensions.h"
+#include "limber/document/gltf/json_access.h"
+#include "limber/document/images.h"
+#include "limber/preview/image/image_decode.h"
 
 namespace limber {
 

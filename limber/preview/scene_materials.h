@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "limber/asset/geometry.h"
+#include "limber/document/scene/geometry.h"
 #include "limber/preview/scene.h"
 
 namespace limber {

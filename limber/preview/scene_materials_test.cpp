@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "limber/asset/read.h"
-#include "limber/asset/testing/gltf_builder.h"
+#include "limber/document/read.h"
+#include "limber/document/testing/gltf_builder.h"
 #include "limber/preview/render.h"
 #include "limber/preview/testing/rgba_png.h"
 

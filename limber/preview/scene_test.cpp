@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "limber/asset/pose_io.h"
+#include "limber/document/rig/pose_io.h"
 #include "limber/preview/testing/rigged_stool.h"
 #include "warning_kinds.h"
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "limber/core/numbers.h"
+#include "limber/core/text/numbers.h"
 
 namespace limber {
 

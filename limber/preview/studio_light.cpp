@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "limber/core/numbers.h"
 #include "limber/core/parallel.h"
+#include "limber/core/text/numbers.h"
 
 namespace limber {
 

@@ -1,7 +1,7 @@
 #include "limber/preview/surface_colors.h"
 
-#include "limber/preview/image.h"
-#include "limber/preview/palette.h"
+#include "limber/preview/image/image.h"
+#include "limber/preview/image/palette.h"
 
 namespace limber {
 

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "limber/pipeline/vertex_colors.h"
+#include "limber/actions/transfer/vertex_colors.h"
 #include "limber/preview/scene.h"
 
 namespace limber {

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "limber/asset/read.h"
-#include "limber/asset/testing/gltf_builder.h"
-#include "limber/preview/image_decode.h"
+#include "limber/document/read.h"
+#include "limber/document/testing/gltf_builder.h"
+#include "limber/preview/image/image_decode.h"
 
 namespace limber {
 namespace {

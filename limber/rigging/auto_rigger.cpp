@@ -2,8 +2,8 @@
 
 #include <optional>
 
-#include "limber/core/names.h"
-#include "limber/mesh/loose_vertices.h"
+#include "limber/core/text/names.h"
+#include "limber/geometry/mesh/loose_vertices.h"
 #include "limber/rigging/curve_skeleton_rigger.h"
 #include "limber/rigging/prop_rigger.h"
 #include "limber/rigging/sphere_mesh_rigger.h"

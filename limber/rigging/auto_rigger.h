@@ -10,7 +10,7 @@
 
 #include "limber/core/error.h"
 #include "limber/core/progress.h"
-#include "limber/mesh/tri_mesh.h"
+#include "limber/geometry/mesh/tri_mesh.h"
 #include "limber/skeleton/skeleton.h"
 
 namespace limber {

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "limber/geometry/surface/testing/shape_meshes.h"
 #include "limber/rigging/prop_rigger.h"
-#include "limber/surface/testing/shape_meshes.h"
 
 namespace limber {
 namespace {

@@ -1,6 +1,6 @@
 #include "limber/rigging/curve_skeleton_rigger.h"
 
-#include "limber/curve_skeleton/curve_skeleton.h"
+#include "limber/rigging/curve_skeleton/curve_skeleton.h"
 #include "limber/rigging/sphere_mesh_rigger.h"
 
 namespace limber {

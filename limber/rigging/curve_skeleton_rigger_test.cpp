@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "limber/surface/testing/shape_meshes.h"
+#include "limber/geometry/surface/testing/shape_meshes.h"
 
 namespace limber {
 

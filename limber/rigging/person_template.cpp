@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-#include "limber/anatomy/humanoid_joints.h"
-#include "limber/templates/joints_between.h"
+#include "limber/character/anatomy/names/humanoid_joints.h"
+#include "limber/rigging/templates/joints_between.h"
 
 namespace limber {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "limber/rigging/auto_rigger.h"
-#include "limber/templates/template_embedding.h"
+#include "limber/rigging/templates/template_embedding.h"
 
 namespace limber {
 

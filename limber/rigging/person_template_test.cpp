@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "limber/body/testing/capsule_person.h"
 #include "limber/core/error.h"
+#include "limber/rigging/body/testing/capsule_person.h"
 #include "limber/rigging/template_rigger.h"
 
 namespace limber {

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "limber/figure/testing/figure_body.h"
-#include "limber/mesh/testing/capsule.h"
+#include "limber/geometry/mesh/testing/capsule.h"
+#include "limber/rigging/figure/testing/figure_body.h"
 #include "limber/rigging/template_rigger.h"
 
 namespace limber {

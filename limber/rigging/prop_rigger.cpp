@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "limber/mesh/model_box.h"
+#include "limber/geometry/mesh/model_box.h"
 
 namespace limber {
 

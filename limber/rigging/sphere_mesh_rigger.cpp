@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "limber/sphere_mesh/handle_count.h"
-#include "limber/sphere_mesh/handle_tree.h"
+#include "limber/rigging/sphere_mesh/handle_count.h"
+#include "limber/rigging/sphere_mesh/handle_tree.h"
 
 namespace limber {
 

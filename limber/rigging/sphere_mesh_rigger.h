@@ -2,7 +2,7 @@
 #pragma once
 
 #include "limber/rigging/auto_rigger.h"
-#include "limber/sphere_mesh/sphere_mesh.h"
+#include "limber/rigging/sphere_mesh/sphere_mesh.h"
 
 namespace limber {
 

@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "limber/mesh/prepare.h"
-#include "limber/surface/testing/shape_meshes.h"
+#include "limber/geometry/mesh/prepare.h"
+#include "limber/geometry/surface/testing/shape_meshes.h"
 #include "shared_data.h"
 
 namespace limber {

@@ -4,11 +4,11 @@
 #include <string_view>
 #include <vector>
 
-#include "limber/body/anatomical_frame.h"
-#include "limber/body/body_volume.h"
 #include "limber/rigging/auto_rigger.h"
-#include "limber/templates/template_fit.h"
-#include "limber/templates/template_skeleton.h"
+#include "limber/rigging/body/anatomical_frame.h"
+#include "limber/rigging/body/body_volume.h"
+#include "limber/rigging/templates/template_fit.h"
+#include "limber/rigging/templates/template_skeleton.h"
 
 namespace limber {
 
@@ -35,12 +35,12 @@ std::vector<NamedTemplate> namedTemplates();
 void checkTemplateName(std::string_view name);
 
 // Measures the body, finds the way it stands and the template that fits best (options.templateName, "auto" tries all),
-// embeds and refines it; where a person's template is in doubt, looks for a figure (limber/figure). Kinds of bodies
-// that are told by their shape alone (planKinds) are laid along its curves, and what the shape stands on speaks for or
-// against every template (readShape). "auto" abstains where no template is likely (RigOptions::mayAbstain): then the
-// model gets handles, with the warning "no-template". Others: "no-place" with the limbs that the model seems to lack,
-// "low-confidence", "stray-pieces" (withoutStrays), with their triangles. Throws Error kBadArgument for an unknown
-// template or pinned joint, one that is pinned twice or far outside the mesh.
+// embeds and refines it; where a person's template is in doubt, looks for a figure (limber/rigging/figure). Kinds of
+// bodies that are told by their shape alone (planKinds) are laid along its curves, and what the shape stands on speaks
+// for or against every template (readShape). "auto" abstains where no template is likely (RigOptions::mayAbstain): then
+// the model gets handles, with the warning "no-template". Others: "no-place" with the limbs that the model seems to
+// lack, "low-confidence", "stray-pieces" (withoutStrays), with their triangles. Throws Error kBadArgument for an
+// unknown template or pinned joint, one that is pinned twice or far outside the mesh.
 AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress& progress);
 
 }  // namespace limber

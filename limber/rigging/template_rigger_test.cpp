@@ -5,9 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include "limber/body/testing/capsule_animal.h"
-#include "limber/body/testing/capsule_person.h"
 #include "limber/core/parallel.h"
+#include "limber/rigging/body/testing/capsule_animal.h"
+#include "limber/rigging/body/testing/capsule_person.h"
 
 namespace limber {
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <utility>
 
-#include "limber/core/numbers.h"
-#include "limber/ik/two_bone.h"
+#include "limber/core/text/numbers.h"
+#include "limber/skeleton/ik/solvers/two_bone.h"
 
 namespace limber {
 

@@ -4,13 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "limber/asset/clip_io.h"
-#include "limber/asset/rig_io.h"
-#include "limber/core/numbers.h"
-#include "limber/mesh/prepare.h"
+#include "limber/core/text/numbers.h"
+#include "limber/document/clip/clip_io.h"
+#include "limber/document/rig/rig_io.h"
+#include "limber/geometry/mesh/prepare.h"
+#include "limber/rigging/weights/weight_method.h"
 #include "limber/samples/character.h"
 #include "limber/samples/model_builder.h"
-#include "limber/skinning/weight_method.h"
 
 namespace limber {
 

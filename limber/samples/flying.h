@@ -1,7 +1,7 @@
 // The winged creature as somebody else would deliver it: with a rig of its own, and flying.
 #pragma once
 
-#include "limber/asset/asset.h"
+#include "limber/document/asset.h"
 
 namespace limber {
 

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "limber/core/parallel.h"
-#include "limber/mesh/normals.h"
+#include "limber/geometry/mesh/normals.h"
 
 namespace limber {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-#include "limber/core/numbers.h"
+#include "limber/core/text/numbers.h"
 
 namespace limber {
 namespace {

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "limber/core/numbers.h"
-#include "limber/ik/two_bone.h"
-#include "limber/samples/motion_recipes.h"
+#include "limber/core/text/numbers.h"
+#include "limber/samples/motions/motion_recipes.h"
+#include "limber/samples/motions/smooth_way.h"
 #include "limber/samples/placed_skeleton.h"
-#include "limber/samples/smooth_way.h"
+#include "limber/skeleton/ik/solvers/two_bone.h"
 
 namespace limber {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "limber/asset/accessor.h"
+#include "limber/document/gltf/accessor.h"
 
 namespace limber {
 

@@ -5,8 +5,8 @@
 #include <span>
 #include <string_view>
 
-#include "limber/asset/asset.h"
 #include "limber/core/transform.h"
+#include "limber/document/asset.h"
 #include "limber/samples/character.h"
 
 namespace limber {

@@ -1,7 +1,7 @@
 // A robot of many pieces, built from parts that are placed by nodes and used several times.
 #pragma once
 
-#include "limber/asset/asset.h"
+#include "limber/document/asset.h"
 
 namespace limber {
 

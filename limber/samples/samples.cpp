@@ -3,7 +3,7 @@
 #include <array>
 
 #include "limber/core/error.h"
-#include "limber/core/names.h"
+#include "limber/core/text/names.h"
 #include "limber/samples/character.h"
 #include "limber/samples/flying.h"
 #include "limber/samples/model_builder.h"

@@ -4,7 +4,7 @@
 #include <span>
 #include <string_view>
 
-#include "limber/asset/asset.h"
+#include "limber/document/asset.h"
 
 namespace limber {
 

@@ -7,14 +7,14 @@
 #include <map>
 #include <set>
 
-#include "limber/asset/clip_io.h"
-#include "limber/asset/geometry.h"
-#include "limber/asset/read.h"
-#include "limber/asset/rig_io.h"
-#include "limber/asset/write.h"
 #include "limber/core/error.h"
 #include "limber/core/parallel.h"
-#include "limber/mesh/prepare.h"
+#include "limber/document/clip/clip_io.h"
+#include "limber/document/read.h"
+#include "limber/document/rig/rig_io.h"
+#include "limber/document/scene/geometry.h"
+#include "limber/document/write.h"
+#include "limber/geometry/mesh/prepare.h"
 #include "shared_data.h"
 
 namespace limber {

@@ -11,10 +11,10 @@
 
 #include <gtest/gtest.h>
 
-#include "limber/asset/geometry.h"
-#include "limber/asset/testing/scene_builder.h"
+#include "limber/document/scene/geometry.h"
+#include "limber/document/testing/scene_builder.h"
+#include "limber/rigging/weights/weight_method.h"
 #include "limber/samples/samples.h"
-#include "limber/skinning/weight_method.h"
 
 namespace limber {
 namespace {

@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "limber/asset/json_access.h"
-#include "limber/asset/json_text.h"
+#include "limber/document/gltf/json_access.h"
+#include "limber/document/gltf/json_text.h"
 
 namespace limber {
 

@@ -8,9 +8,9 @@
 #include <variant>
 #include <vector>
 
-#include "limber/asset/asset.h"
 #include "limber/core/types.h"
-#include "limber/skeleton/keyframes.h"
+#include "limber/document/asset.h"
+#include "limber/skeleton/clip/keys/keyframes.h"
 
 namespace limber {
 

@@ -5,7 +5,7 @@
 
 #include "limber/core/error.h"
 #include "limber/core/rotation.h"
-#include "limber/session/clip_curves.h"
+#include "limber/session/edit/clip_curves.h"
 #include "limber/session/session.h"
 #include "limber/session/session_state.h"
 

@@ -6,11 +6,11 @@
 
 #include <fmt/format.h>
 
-#include "limber/asset/clip_io.h"
-#include "limber/asset/moving_parents.h"
-#include "limber/asset/node_edit.h"
-#include "limber/asset/pose_io.h"
-#include "limber/asset/rest_pose.h"
+#include "limber/document/clip/clip_io.h"
+#include "limber/document/clip/moving_parents.h"
+#include "limber/document/rig/pose_io.h"
+#include "limber/document/rig/rest_pose.h"
+#include "limber/document/scene/node_edit.h"
 #include "limber/session/refuse.h"
 
 namespace limber {

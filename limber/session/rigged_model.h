@@ -7,14 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "limber/anatomy/anatomy.h"
-#include "limber/asset/rig_io.h"
-#include "limber/mesh/tri_mesh.h"
-#include "limber/pipeline/auto_rig.h"
-#include "limber/skeleton/clip.h"
+#include "limber/actions/rig/auto_rig.h"
+#include "limber/character/anatomy/anatomy.h"
+#include "limber/deform/deform_preparations.h"
+#include "limber/deform/linear_blend.h"
+#include "limber/document/rig/rig_io.h"
+#include "limber/geometry/mesh/tri_mesh.h"
+#include "limber/skeleton/clip/clip.h"
 #include "limber/skeleton/pose.h"
-#include "limber/skinning/deform_preparations.h"
-#include "limber/skinning/linear_blend.h"
 
 namespace limber {
 

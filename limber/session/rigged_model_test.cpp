@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "limber/asset/pose_io.h"
-#include "limber/asset/testing/two_bind_poses.h"
+#include "limber/document/rig/pose_io.h"
+#include "limber/document/testing/two_bind_poses.h"
 
 namespace limber {
 namespace {
@@ -21,7 +21,8 @@ std::vector<Vec3f> asItsNodesStand(const RiggedModel& model) {
 TEST(OpenRiggedModel, BringsSkinsToOneBindPose) {
   const std::shared_ptr<const RiggedModel> alike = openRiggedModel(testing::partsInTwoBindPoses(Vec3f::Zero()));
   EXPECT_TRUE(alike->asset->warnings.empty());
-  const Asset elsewhere = testing::partsInTwoBindPoses({0, 5, 0}), unbound = testing::partsInTwoBindPoses({0, 0, -3}, false);
+  const Asset elsewhere = testing::partsInTwoBindPoses({0, 5, 0}),
+              unbound = testing::partsInTwoBindPoses({0, 0, -3}, false);
   ASSERT_FALSE(unbound.document.skins[1].inverseBindMatrices);
   for (const Asset* asset : {&elsewhere, &unbound}) {
     const std::shared_ptr<const RiggedModel> model = openRiggedModel(*asset);

@@ -9,15 +9,15 @@
 #include <string_view>
 #include <vector>
 
-#include "limber/asset/read.h"
-#include "limber/ik/limits.h"
+#include "limber/document/read.h"
 #include "limber/session/command.h"
 #include "limber/session/command_record.h"
-#include "limber/session/drag.h"
-#include "limber/session/movement.h"
-#include "limber/session/paint_weights.h"
-#include "limber/session/pick.h"
+#include "limber/session/drag/drag.h"
+#include "limber/session/drag/pick.h"
+#include "limber/session/edit/movement.h"
+#include "limber/session/edit/paint_weights.h"
 #include "limber/session/rigged_model.h"
+#include "limber/skeleton/ik/limits/limits.h"
 
 namespace limber {
 

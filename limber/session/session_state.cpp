@@ -2,13 +2,13 @@
 
 #include <algorithm>
 
-#include "limber/anatomy/body_part.h"
-#include "limber/anatomy/part_color.h"
-#include "limber/ik/limit_outline.h"
-#include "limber/ik/limits_json.h"
-#include "limber/pipeline/transfer_asset.h"
-#include "limber/session/state_json.h"
-#include "limber/skeleton/keyframes.h"
+#include "limber/actions/transfer/transfer_asset.h"
+#include "limber/character/anatomy/body_part.h"
+#include "limber/character/anatomy/part_color.h"
+#include "limber/session/scene/state_json.h"
+#include "limber/skeleton/clip/keys/keyframes.h"
+#include "limber/skeleton/ik/limits/limit_outline.h"
+#include "limber/skeleton/ik/limits/limits_json.h"
 
 namespace limber {
 

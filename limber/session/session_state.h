@@ -1,7 +1,7 @@
 // A session's state in JSON, for a front end to show.
 #pragma once
 
-#include "limber/asset/asset.h"
+#include "limber/document/asset.h"
 #include "limber/session/session.h"
 
 namespace limber {

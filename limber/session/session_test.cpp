@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "limber/asset/write.h"
 #include "limber/core/error.h"
+#include "limber/document/write.h"
 #include "limber/session/session_state.h"
 #include "limber/session/testing/models.h"
 

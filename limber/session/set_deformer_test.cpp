@@ -6,11 +6,11 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "limber/asset/pose_io.h"
+#include "limber/actions/pose/pose_asset.h"
 #include "limber/core/error.h"
-#include "limber/pipeline/pose_asset.h"
-#include "limber/session/measures.h"
-#include "limber/session/scene.h"
+#include "limber/document/rig/pose_io.h"
+#include "limber/session/drag/measures.h"
+#include "limber/session/scene/scene.h"
 #include "limber/session/session.h"
 #include "limber/session/session_state.h"
 #include "limber/session/testing/models.h"

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "limber/core/numbers.h"
+#include "limber/core/text/numbers.h"
 
 namespace limber {
 namespace {

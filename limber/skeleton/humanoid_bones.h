@@ -23,7 +23,7 @@ struct HumanoidJoint {
 };
 
 // Joints whose names are those of bones, letter by letter, in the order of humanoidBones(): of skeletons that limber
-// has made. humanoidJoints (limber/anatomy) reads those of others.
+// has made. humanoidJoints (limber/character/anatomy) reads those of others.
 std::vector<HumanoidJoint> jointsCalledAsBones(const Skeleton& skeleton);
 
 // Joints that their file declares to be bones (Joint::declaredBone), each bone once, in the same order.

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "limber/core/error.h"
-#include "limber/skeleton/clip.h"
+#include "limber/skeleton/clip/clip.h"
 
 namespace limber {
 

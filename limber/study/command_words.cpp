@@ -1,6 +1,6 @@
 #include "limber/study/command_words.h"
 
-#include "limber/asset/utf8.h"
+#include "limber/document/utf8.h"
 #include "limber/jobs/last_line.h"
 
 namespace limber {

@@ -9,9 +9,9 @@
 
 #include <fmt/format.h>
 
-#include "limber/asset/uri.h"
 #include "limber/core/error.h"
-#include "limber/core/names.h"
+#include "limber/core/text/names.h"
+#include "limber/document/uri.h"
 #include "limber/jobs/job_key.h"
 
 namespace limber {

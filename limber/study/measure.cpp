@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "limber/core/names.h"
+#include "limber/core/text/names.h"
 
 namespace limber {
 

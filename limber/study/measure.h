@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "limber/asset/asset.h"
+#include "limber/document/asset.h"
 
 namespace limber {
 

@@ -5,9 +5,9 @@
 #include <string_view>
 #include <system_error>
 
-#include "limber/asset/utf8.h"
 #include "limber/core/error.h"
-#include "limber/core/folder.h"
+#include "limber/core/file/folder.h"
+#include "limber/document/utf8.h"
 #include "limber/study/study_plan.h"
 
 namespace limber {

@@ -9,19 +9,19 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "limber/actions/rig/rig_request.h"
 #include "limber/adapters/adapter_folder.h"
 #include "limber/adapters/job_limits.h"
-#include "limber/asset/json_access.h"
-#include "limber/asset/json_keys.h"
-#include "limber/asset/json_text.h"
-#include "limber/core/names.h"
-#include "limber/ik/ik_solver.h"
-#include "limber/pipeline/rig_request.h"
-#include "limber/retarget/retarget_method.h"
+#include "limber/core/text/names.h"
+#include "limber/deform/deformer.h"
+#include "limber/document/gltf/json_access.h"
+#include "limber/document/gltf/json_keys.h"
+#include "limber/document/gltf/json_text.h"
+#include "limber/motion/retarget/retarget_method.h"
 #include "limber/rigging/auto_rigger.h"
 #include "limber/rigging/template_rigger.h"
-#include "limber/skinning/deformer.h"
-#include "limber/skinning/weight_method.h"
+#include "limber/rigging/weights/weight_method.h"
+#include "limber/skeleton/ik/ik_solver.h"
 
 namespace limber {
 

@@ -8,10 +8,10 @@
 #include <nlohmann/json.hpp>
 
 #include "limber/core/error.h"
-#include "limber/ik/ik_solver.h"
+#include "limber/deform/deformer.h"
 #include "limber/rigging/auto_rigger.h"
-#include "limber/skinning/deformer.h"
-#include "limber/skinning/weight_method.h"
+#include "limber/rigging/weights/weight_method.h"
+#include "limber/skeleton/ik/ik_solver.h"
 #include "source_folder.h"
 #include "temporary_folder.h"
 

@@ -9,10 +9,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "limber/asset/json_access.h"
-#include "limber/asset/json_text.h"
-#include "limber/asset/utf8.h"
-#include "limber/core/folder.h"
+#include "limber/core/file/folder.h"
+#include "limber/document/gltf/json_access.h"
+#include "limber/document/gltf/json_text.h"
+#include "limber/document/utf8.h"
 #include "limber/jobs/job_key.h"
 #include "limber/jobs/job_pool.h"
 #include "limber/jobs/result_store.h"

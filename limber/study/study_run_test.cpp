@@ -9,7 +9,7 @@
 #include <iterator>
 
 #include "limber/core/error.h"
-#include "limber/study/cell_table.h"
+#include "limber/study/report/cell_table.h"
 #include "temporary_folder.h"
 
 namespace limber {

@@ -2,9 +2,9 @@
 // finite numbers.
 #include <cstdlib>
 
-#include "limber/asset/bvh_stream.h"
-#include "limber/asset/live_text.h"
-#include "limber/asset/vmc_stream.h"
+#include "limber/document/bvh/bvh_stream.h"
+#include "limber/document/live/live_text.h"
+#include "limber/document/live/vmc_stream.h"
 
 namespace {
 

@@ -4,12 +4,12 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "limber/asset/pose_file.h"
+#include "limber/actions/pose/pose_asset.h"
+#include "limber/actions/pose/put_pose.h"
 #include "limber/core/error.h"
-#include "limber/ik/ik_skeletons.h"
-#include "limber/ik/limits_json.h"
-#include "limber/pipeline/pose_asset.h"
-#include "limber/pipeline/put_pose.h"
+#include "limber/document/clip/pose_file.h"
+#include "limber/skeleton/ik/ik_skeletons.h"
+#include "limber/skeleton/ik/limits/limits_json.h"
 
 namespace {
 

@@ -2,8 +2,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include "limber/character/matching/skeleton_map.h"
 #include "limber/core/error.h"
-#include "limber/matching/skeleton_map.h"
 
 namespace {
 

@@ -2,10 +2,10 @@
 // is read again from both.
 #include <cstdlib>
 
-#include "limber/asset/bvh_read.h"
-#include "limber/asset/bvh_write.h"
-#include "limber/asset/motion_io.h"
-#include "limber/asset/write.h"
+#include "limber/document/bvh/bvh_read.h"
+#include "limber/document/bvh/bvh_write.h"
+#include "limber/document/clip/motion_io.h"
+#include "limber/document/write.h"
 
 namespace {
 

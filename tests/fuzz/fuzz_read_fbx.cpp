@@ -2,10 +2,10 @@
 // writing.
 #include <cstdlib>
 
-#include "limber/asset/asset.h"
-#include "limber/asset/import_fbx.h"
-#include "limber/asset/read.h"
-#include "limber/asset/write.h"
+#include "limber/document/asset.h"
+#include "limber/document/fbx/import_fbx.h"
+#include "limber/document/read.h"
+#include "limber/document/write.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const limber::ByteSpan bytes(data, size);

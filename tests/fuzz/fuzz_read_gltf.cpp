@@ -3,14 +3,14 @@
 #include <cstdlib>
 #include <vector>
 
-#include "limber/asset/accessor.h"
-#include "limber/asset/geometry.h"
-#include "limber/asset/glb.h"
-#include "limber/asset/mesh_export.h"
-#include "limber/asset/pose_io.h"
-#include "limber/asset/read.h"
-#include "limber/asset/rig_io.h"
-#include "limber/asset/write.h"
+#include "limber/document/gltf/accessor.h"
+#include "limber/document/gltf/glb.h"
+#include "limber/document/mesh/mesh_export.h"
+#include "limber/document/read.h"
+#include "limber/document/rig/pose_io.h"
+#include "limber/document/rig/rig_io.h"
+#include "limber/document/scene/geometry.h"
+#include "limber/document/write.h"
 
 namespace {
 

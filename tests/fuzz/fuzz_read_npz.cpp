@@ -2,9 +2,9 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "limber/asset/smpl_arrays.h"
-#include "limber/asset/smpl_motion.h"
-#include "limber/pipeline/smpl_body.h"
+#include "limber/actions/rig/smpl_body.h"
+#include "limber/document/smpl/smpl_arrays.h"
+#include "limber/document/smpl/smpl_motion.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   limber::NpzFiles files;

@@ -2,7 +2,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "limber/asset/read.h"
+#include "limber/document/read.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size < 4 || data[0] != 'p' || data[1] != 'l' || data[2] != 'y') return 0;

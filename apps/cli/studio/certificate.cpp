@@ -16,7 +16,7 @@
 #include <fmt/format.h>
 
 #include "limber/core/error.h"
-#include "limber/core/file.h"
+#include "limber/core/file/file.h"
 
 namespace limber::cli {
 

@@ -15,10 +15,10 @@ struct LivePorts {
   int bvh = 39540;
 };
 
-// Listens on 127.0.0.1 alone and gives `feed` what comes, as limber/asset/live_text.h writes it, until it is destroyed.
-// Packets are of 16 KiB at most and 20,000 a second, a BVH of one sender at a time and 16 MiB a second; what is more is
-// dropped, or waits. At most 250 frames a second are handed on, the latest of each moment. A sender whose BVH breaks
-// the format is hung up on, and `tell` says why: so is a web page, whose requests are none.
+// Listens on 127.0.0.1 alone and gives `feed` what comes, as limber/document/live/live_text.h writes it, until it is
+// destroyed. Packets are of 16 KiB at most and 20,000 a second, a BVH of one sender at a time and 16 MiB a second; what
+// is more is dropped, or waits. At most 250 frames a second are handed on, the latest of each moment. A sender whose
+// BVH breaks the format is hung up on, and `tell` says why: so is a web page, whose requests are none.
 class LiveReceiver {
  public:
   // Throws Error kFile where a port is taken. 0 takes a free one.

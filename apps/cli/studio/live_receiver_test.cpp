@@ -11,8 +11,8 @@
 
 #include <gmock/gmock.h>
 
-#include "limber/asset/testing/osc_bytes.h"
 #include "limber/core/error.h"
+#include "limber/document/testing/osc_bytes.h"
 
 namespace limber::cli {
 namespace {

@@ -109,7 +109,7 @@ async function usdzApart({ vertices }) {
   return Math.max(...different.map((p) => Math.min(...vertices.map((v) => Math.hypot(p[0] - v[0], p[1] - v[1], p[2] - v[2])))));
 }
 
-/** Distortion above 1 of each triangle (limber/evaluate/surface_stretch.h), at most 1. */
+/** Distortion above 1 of each triangle (limber/evaluate/skin/surface_stretch.h), at most 1. */
 function stretches(rest, posed) {
   const edges = ({ vertices }, [a, b, c]) => [b, c].map((corner) => vertices[corner].map((value, axis) => value - vertices[a][axis]));
   const dot = (u, v) => u.reduce((sum, value, axis) => sum + value * v[axis], 0);

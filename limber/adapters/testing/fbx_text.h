@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "limber/mesh/tri_mesh.h"
+#include "limber/geometry/mesh/tri_mesh.h"
 #include "limber/skeleton/skin_weights.h"
 
 namespace limber::testing {

@@ -13,12 +13,12 @@
 
 #include "limber/adapters/adapter.h"
 #include "limber/adapters/handed_model.h"
-#include "limber/asset/geometry.h"
-#include "limber/asset/mesh_asset.h"
-#include "limber/asset/rig_io.h"
-#include "limber/asset/write.h"
-#include "limber/mesh/prepare.h"
-#include "limber/mesh/testing/capsule.h"
+#include "limber/document/mesh/mesh_asset.h"
+#include "limber/document/rig/rig_io.h"
+#include "limber/document/scene/geometry.h"
+#include "limber/document/write.h"
+#include "limber/geometry/mesh/prepare.h"
+#include "limber/geometry/mesh/testing/capsule.h"
 
 namespace limber::testing {
 

@@ -5,7 +5,7 @@
 
 #include "limber/crowd/crowd.h"
 #include "limber/crowd/testing/dragon.h"
-#include "limber/samples/sample_motions.h"
+#include "limber/samples/motions/sample_motions.h"
 
 namespace limber {
 

@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "limber/asset/accessor.h"
-#include "limber/asset/asset.h"
-#include "limber/asset/scene_graph.h"
+#include "limber/document/asset.h"
+#include "limber/document/gltf/accessor.h"
+#include "limber/document/scene/scene_graph.h"
 
 namespace limber::testing {
 

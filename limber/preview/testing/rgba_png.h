@@ -5,7 +5,7 @@
 
 #include <png.h>
 
-#include "limber/core/file.h"
+#include "limber/core/file/file.h"
 
 namespace limber::testing {
 

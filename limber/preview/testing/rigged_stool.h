@@ -1,7 +1,7 @@
 // The sample stool with three handles.
 #pragma once
 
-#include "limber/pipeline/auto_rig.h"
+#include "limber/actions/rig/auto_rig.h"
 #include "limber/samples/samples.h"
 
 namespace limber::testing {

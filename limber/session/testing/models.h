@@ -1,16 +1,16 @@
 // Small models and a motion made in code, for tests of sessions. Not installed.
 #pragma once
 
-#include "limber/asset/bvh_write.h"
-#include "limber/asset/read.h"
-#include "limber/asset/rig_io.h"
-#include "limber/asset/testing/gltf_builder.h"
-#include "limber/asset/write.h"
+#include "limber/character/matching/testing/test_motion.h"
 #include "limber/core/error.h"
-#include "limber/matching/testing/test_motion.h"
-#include "limber/retarget/retarget_clip.h"
+#include "limber/document/bvh/bvh_write.h"
+#include "limber/document/read.h"
+#include "limber/document/rig/rig_io.h"
+#include "limber/document/testing/gltf_builder.h"
+#include "limber/document/write.h"
+#include "limber/geometry/surface/testing/shape_meshes.h"
+#include "limber/motion/retarget/retarget_clip.h"
 #include "limber/session/rigged_model.h"
-#include "limber/surface/testing/shape_meshes.h"
 
 namespace limber::testing {
 

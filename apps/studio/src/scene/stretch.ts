@@ -5,7 +5,7 @@ const full = 1; // above the size at rest: twice as long, or half, is as hot as 
 
 // The singular values of the map from the triangle at rest to the posed one are the roots of the eigenvalues of one's metric
 // by the other's; any two directions on the triangle will do for these, so the screen's do. The larger of the one value and
-// one by the other is the distortion (limber/evaluate/surface_stretch.h).
+// one by the other is the distortion (limber/evaluate/skin/surface_stretch.h).
 const heat = `
   #ifdef SHOW_STRETCH
     vec3 restX = dFdx(stretchRest), restY = dFdy(stretchRest), posedX = dFdx(stretchPosed), posedY = dFdy(stretchPosed);

@@ -1,0 +1,193 @@
+#include "limber/actions/motion/clip_edits.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "limber/character/anatomy/body_pieces.h"
+#include "limber/core/error.h"
+#include "limber/document/clip/clip_io.h"
+#include "limber/document/clip/motion_io.h"
+#include "limber/document/clip/moving_parents.h"
+#include "limber/document/clip/trim_animation.h"
+#include "limber/document/gltf/accessor_sweep.h"
+#include "limber/document/gltf/compact_buffers.h"
+#include "limber/document/rig/root_joint.h"
+#include "limber/document/scene/geometry.h"
+#include "limber/document/scene/node_edit.h"
+#include "limber/skeleton/clip/join_loop.h"
+#include "limber/skeleton/clip/keys/key_reduction.h"
+#include "limber/skeleton/clip/root_extraction.h"
+
+namespace limber {
+
+namespace {
+
+Clip looped(const Skeleton& skeleton, const Clip& clip, Index body, ClipEditReport& report) {
+  LoopOptions options;
+  options.body = body;
+  report.loop = findLoop(skeleton, clip, options);
+  if (!report.loop) return clip;
+  JoinedLoop joined = joinLoop(skeleton, trimClip(clip, report.loop->begin, report.loop->end), body);
+  report.gap = joined.gap;
+  report.largestChange = joined.largestChange;
+  return std::move(joined.clip);
+}
+
+// `root`: the joint that takes the travel, if one does.
+Clip edited(const Skeleton& skeleton, Clip clip, std::optional<Index> root, const ClipEdits& edits,
+            ClipEditReport& report) {
+  const Index body = bodyJoint(skeleton);
+  if (edits.loop) clip = looped(skeleton, clip, body, report);
+  if (edits.inPlace || root) {
+    RootMotionOptions options;
+    options.body = body;
+    options.height = edits.height;
+    options.heading = edits.heading;
+    options.smoothing = edits.smoothing;
+    options.loops = report.loop.has_value();
+    const RootTrajectory trajectory = rootTrajectory(skeleton, clip, options);
+    clip = edits.inPlace ? clipInPlace(skeleton, clip, body, trajectory)
+                         : extractRootMotion(skeleton, clip, *root, trajectory);
+  }
+  if (edits.frameRate) clip = resampleClip(clip, *edits.frameRate);
+  return clip;
+}
+
+void renumberJoints(Clip& clip, const std::vector<Index>& number) {
+  const auto renumber = [&](auto& tracks) {
+    for (auto& track : tracks) track.joint = number[track.joint];
+  };
+  renumber(clip.translations);
+  renumber(clip.rotations);
+  renumber(clip.scales);
+}
+
+struct RootedSkeleton {
+  AssetSkeleton skeleton;
+  std::optional<Index> root;
+};
+
+void tellOfFollowers(Asset& asset, const AssetSkeleton& skeleton, Index root) {
+  if (!hasRig(asset)) return;
+  const SkinWeights weights = readWeights(asset, collectGeometry(asset), skeleton);
+  std::size_t followers = 0;
+  for (std::size_t i = 0; i < weights.weights.size(); ++i) {
+    if (weights.joints[i] == root && weights.weights[i] > 0) ++followers;
+  }
+  asset.warnings.add("root-weights", "vertices follow the root joint in part, and its travel likewise",
+                     skeleton.skeleton.joints[root].name, followers);
+}
+
+// With the root joint that is asked for.
+RootedSkeleton withRootJoint(Asset& asset, const ClipEdits& edits) {
+  RootedSkeleton result{animatedSkeleton(asset), std::nullopt};
+  if (!edits.rootJoint) return result;
+  result.root = findRootJoint(asset, result.skeleton);
+  if (result.root) {
+    tellOfFollowers(asset, result.skeleton, *result.root);
+    return result;
+  }
+  result.skeleton = addRootJoint(asset, *edits.rootJoint);
+  result.root = 0;
+  return result;
+}
+
+// Takes the animations of joints out; what else they move stays in them.
+void removeJointChannels(Asset& asset, const AssetSkeleton& skeleton, std::span<const Index> animations) {
+  std::vector<bool> isJoint(asset.document.nodeCount(), false);
+  for (const Index node : skeleton.jointNode) isJoint[node] = true;
+  for (const Index a : animations) {
+    removeChannels(asset.document.animations[a],
+                   [&](Index node, std::string_view path) { return isJoint[node] && path.rfind("weights", 0) != 0; });
+  }
+}
+
+CarriedPoints carriedBy(const Asset& asset, const AssetSkeleton& skeleton) {
+  if (!hasRig(asset)) return carriedPoints(skeleton.skeleton, {}, {});
+  const Geometry geometry = collectGeometry(asset);
+  return carriedPoints(skeleton.skeleton, geometry.positions, readWeights(asset, geometry, skeleton));
+}
+
+}  // namespace
+
+Index bodyJoint(const Skeleton& skeleton) {
+  return skeleton.joints.empty() ? 0 : BodyPieces(skeleton).pelvis.value_or(0);
+}
+
+std::vector<ClipEditReport> editClips(Asset& asset, std::span<const std::string> names, const ClipEdits& edits) {
+  std::vector<ClipEditReport> reports;
+  if (names.empty() || !edits.any()) return reports;
+  std::vector<Index> animations;
+  for (const std::string& name : names) {
+    const std::vector<gltf::Animation>& all = asset.document.animations;
+    const auto found =
+        std::find_if(all.begin(), all.end(), [&](const auto& animation) { return animation.name == name; });
+    if (found == all.end()) {
+      throw Error(ErrorCode::kBadArgument, fmt::format("there is no clip called '{}'", name), asset.name);
+    }
+    animations.push_back(static_cast<Index>(found - all.begin()));
+  }
+  const BufferViewSweep views(asset);
+  settleMovingParents(asset, animatedSkeleton(asset), animations);
+  const RootedSkeleton rooted = withRootJoint(asset, edits);
+  const AccessorSweep accessors(asset);  // after that: accessors have other numbers then
+  std::vector<Clip> clips;
+  {
+    const std::vector<Clip> all = readClips(asset, rooted.skeleton, asset.warnings);
+    for (const Index a : animations) clips.push_back(all[a]);
+  }
+  const Skeleton& skeleton = rooted.skeleton.skeleton;
+  const CarriedPoints carried = edits.tolerance ? carriedBy(asset, rooted.skeleton) : CarriedPoints();
+  for (Clip& clip : clips) {
+    ClipEditReport report;
+    report.clip = clip.name;
+    clip = edited(skeleton, std::move(clip), rooted.root, edits, report);
+    if (edits.tolerance) {
+      ReducedClip reduced = reduceKeys(skeleton, clip, carried, {*edits.tolerance, true});
+      report.keysBefore = reduced.keysBefore;
+      report.keysAfter = reduced.keysAfter;
+      report.largestError = reduced.largestError;
+      clip = std::move(reduced.clip);
+    }
+    reports.push_back(std::move(report));
+  }
+  removeJointChannels(asset, rooted.skeleton, animations);
+  for (std::size_t c = 0; c < clips.size(); ++c) {
+    const std::optional<ClipLoop>& loop = reports[c].loop;
+    if (loop) loopAnimation(asset, asset.document.animations[animations[c]], {loop->begin, loop->end});
+  }
+  addClips(asset, rooted.skeleton, clips, {edits.tolerance.has_value()});
+  moveLastAnimations(asset.document, animations);
+  accessors.sweep(asset);
+  views.sweep(asset);
+  return reports;
+}
+
+std::vector<ClipEditReport> editClips(Motion& motion, const ClipEdits& edits) {
+  std::vector<ClipEditReport> reports;
+  std::optional<Index> root;
+  if (edits.rootJoint) {
+    Motion still = motion;
+    still.clips.clear();
+    still.warnings = {};
+    Asset asset = motionAsset(still);
+    RootedSkeleton rooted = withRootJoint(asset, edits);
+    motion.warnings.append(asset.warnings);
+    std::vector<Index> number;
+    for (const Joint& joint : motion.skeleton.joints) number.push_back(*rooted.skeleton.skeleton.find(joint.name));
+    for (Clip& clip : motion.clips) renumberJoints(clip, number);
+    motion.skeleton = std::move(rooted.skeleton.skeleton);
+    root = rooted.root;
+  }
+  for (Clip& clip : motion.clips) {
+    ClipEditReport report;
+    report.clip = clip.name;
+    clip = edited(motion.skeleton, std::move(clip), root, edits, report);
+    reports.push_back(std::move(report));
+  }
+  if (edits.frameRate) motion.framesPerSecond = *edits.frameRate;
+  return reports;
+}
+
+}  // namespace limber

@@ -1,0 +1,37 @@
+// A document taken apart: each part a mesh of its own, closed where it was cut.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "limber/actions/parts/fuzzy_cut.h"
+#include "limber/core/progress.h"
+#include "limber/document/scene/geometry.h"
+
+namespace limber {
+
+struct SplitOptions {
+  bool caps = true;  // close the cuts (capParts)
+};
+
+// The nodes that show a part, after splitting.
+struct PartNodes {
+  std::string name;
+  std::vector<Index> nodes;
+};
+
+// Each mesh that a node of the scene shows gives way to one for each part that it has triangles of, on a node named
+// after the part ("head", or "head_part" where a node has that name already), with the vertices that the part uses: all
+// attributes, morph targets and weights go along, and skins. Without a skin the new nodes hang below the one that had
+// the mesh, and move with it. Meshes of one skin that have no morph targets become one for each part, on nodes at the
+// scenes' roots, as glTF wants skinned ones; nodes that hold nothing any more then go. Caps are primitives of their
+// own, with a material named "cut", flat normals, weights as at the vertices round them, no texture coordinates.
+//
+// geometry  collectGeometry(asset) as it is; `parts` one for each of its triangles
+// Warning "open-cuts": edges of cuts that no cap closes, since the surface is open there, or two nodes share the cut.
+// What is no triangles stays where it is. Throws Error kUnsupported where GPU instances show a mesh,
+// kCancelled. Cost: O(#F log #F + #parts #S).
+std::vector<PartNodes> splitParts(Asset& asset, const Geometry& geometry, const SurfaceParts& parts,
+                                  const SplitOptions& options, Progress& progress);
+
+}  // namespace limber

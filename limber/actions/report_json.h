@@ -1,0 +1,17 @@
+// What autoRig and rigFromAnimation did, as JSON: one form for the command line, the studio and WebAssembly
+// (docs/report.md).
+#pragma once
+
+#include "limber/actions/rig/auto_rig.h"
+
+namespace limber {
+
+struct AnimationRigReport;
+
+// Keys in the order of docs/report.md, in snake_case. Text out of the file stands in it as it is: dumpReport writes it.
+Json toJson(const AutoRigReport& report);
+Json toJson(const AnimationRigReport& report);
+// [{"name", "seconds", "steps": the same, where there are any}]
+Json stagesJson(const std::vector<StageTime>& stages);
+
+}  // namespace limber

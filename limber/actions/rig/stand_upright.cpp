@@ -1,0 +1,127 @@
+#include "limber/actions/rig/stand_upright.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "limber/character/matching/neutral_pose.h"
+#include "limber/character/matching/rest_form.h"
+#include "limber/core/rotation.h"
+#include "limber/document/clip/motion_io.h"
+#include "limber/document/scene/turn_scene.h"
+#include "limber/skeleton/clip/clip_edit.h"
+
+namespace limber {
+
+namespace {
+
+constexpr const char *kName = "upright", *kTurned = "turned-upright";
+
+Eigen::Index nearestAxis(const Vec3& direction) {
+  Eigen::Index axis = 0;
+  direction.cwiseAbs().maxCoeff(&axis);
+  return axis;
+}
+
+bool isUpright(const Vec3& up) {
+  return nearestAxis(up) == 1 && up.y() > 0;
+}
+
+std::string nameOfAxis(const Vec3& direction) {
+  const Eigen::Index axis = nearestAxis(direction);
+  return fmt::format("{}{}", direction[axis] < 0 ? '-' : '+', "XYZ"[axis]);
+}
+
+// Onto +Y; one who stands on the head goes on facing where it does.
+Quat turnOf(const Vec3& up) {
+  const Eigen::Index axis = nearestAxis(up);
+  const Vec3 along = std::copysign(1.0, up[axis]) * Vec3::Unit(axis);
+  return axis == 1 && up.y() < 0 ? Quat(0, 0, 0, 1) : shortestRotation(along, Vec3::UnitY());
+}
+
+// A body with a head and two legs, each named, so that no form in another pose misleads.
+bool isNamedBiped(const Anatomy& anatomy) {
+  const auto isSure = [&](PartKind kind, Side side) {
+    const Part* part = anatomy.find(kind, side);
+    return part && part->evidence != Evidence::kForm && part->confidence >= kDoubtful;
+  };
+  return anatomy.pairsOf(PartKind::kLeg) == 1 && isSure(PartKind::kTrunk, Side::kCenter) &&
+         isSure(PartKind::kHead, Side::kCenter) && isSure(PartKind::kLeg, Side::kLeft) &&
+         isSure(PartKind::kLeg, Side::kRight);
+}
+
+// From a rest pose that lies to clips of which most begin with one who stands along +Y; else none.
+Quat turnOfClips(const Motion& motion) {
+  const Quat turn = turnToStand(motion.skeleton);
+  if (turn.isApprox(Quat::Identity())) return turn;
+  std::size_t standing = 0;
+  for (const Clip& clip : motion.clips) {
+    Pose pose = restPose(motion.skeleton);
+    sampleClip(clip, 0, pose);
+    const std::optional<Vec3> now = standsAlong(motion.skeleton, pose);
+    if (now && isUpright(*now)) ++standing;
+  }
+  return 2 * standing > motion.clips.size() ? turn : Quat::Identity();
+}
+
+std::optional<Vec3> restsAlong(const Asset& asset) {
+  const Skeleton skeleton = animatedSkeleton(asset).skeleton;
+  return standsAlong(skeleton, restPose(skeleton));
+}
+
+}  // namespace
+
+std::optional<Vec3> standsAlong(const Skeleton& skeleton, const Pose& pose) {
+  if (!hasForm(skeleton, pose) || !isNamedBiped(readAnatomy(skeleton))) return {};
+  const SkeletonMap map = matchSkeletons(skeleton, skeleton);
+  if (!map.isBiped() || !standsUpright(skeleton, pose, map, MapSide::kTarget)) return {};
+  return neutralPose(skeleton, pose, map, MapSide::kTarget, {}).toBody.conjugate() * Vec3::UnitY();
+}
+
+Quat turnToStand(const Skeleton& skeleton) {
+  const std::optional<Vec3> up = standsAlong(skeleton, restPose(skeleton));
+  return up && !isUpright(*up) ? turnOf(*up) : Quat::Identity();
+}
+
+void standUpright(Asset& asset, const Vec3& up, bool turn, Warnings& warnings) {
+  if (isUpright(up)) return;
+  if (turn) {
+    turnScene(asset, turnOf(up), kName);
+    warnings.add(kTurned, fmt::format("the model stands along {} and is turned to stand along +Y", nameOfAxis(up)));
+  } else {
+    warnings.add("not-upright", fmt::format("the model stands along {} and lies where +Y is up", nameOfAxis(up)));
+  }
+}
+
+void warnMaybeLies(const Vec3& up, double confidence, Warnings& warnings) {
+  if (isUpright(up)) return;
+  warnings.add("maybe-not-upright", fmt::format("the model may stand along {} and lie where +Y is up ({:.0f} % sure)",
+                                                nameOfAxis(up), 100 * confidence));
+}
+
+Quat standUpright(Asset& asset, Warnings& warnings) {
+  const std::optional<Vec3> up = restsAlong(asset);
+  if (!up || isUpright(*up)) return Quat::Identity();
+  const Quat turn = turnOfClips(motionOf(asset));
+  if (turn.isApprox(Quat::Identity())) {
+    gltf::Document before = asset.document;
+    Warnings turned;
+    standUpright(asset, *up, true, turned);
+    if (const std::optional<Vec3> now = restsAlong(asset); now && isUpright(*now)) {
+      warnings.append(turned);
+      return Quat::Identity();
+    }
+    asset.document = std::move(before);  // skins may be bound to where their mesh lies
+  }
+  warnings.add(kTurned,
+               fmt::format("the model rests along {}; the new clips are turned to stand along +Y", nameOfAxis(*up)));
+  return turnOf(*up);
+}
+
+Motion asItRests(Motion motion) {
+  const Quat back = turnOfClips(motion).conjugate();
+  for (Clip& clip : motion.clips) clip = turnClip(std::move(clip), motion.skeleton, back);
+  return motion;
+}
+
+}  // namespace limber

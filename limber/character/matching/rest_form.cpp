@@ -1,0 +1,151 @@
+#include "limber/character/matching/rest_form.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Eigenvalues>
+
+#include "limber/character/anatomy/anatomy.h"
+#include "limber/core/text/numbers.h"
+
+namespace limber {
+
+namespace {
+
+// Fraction of the bones' length, by the squared sine between bone and line, that may point away from the line: 0.02 is
+// 8 degrees for all of them. People in T-pose have 0.3 and more, with arms and legs hanging parallel 0.1 by their feet;
+// zeroed axes have 0.
+constexpr double kOffLine = 0.02;
+constexpr std::size_t kMinLimbs = 4;      // chains; snakes and fish are straight and have a form all the same
+constexpr std::size_t kMinLimbBones = 2;  // thigh and shin
+constexpr int kMaxMoments = 100;          // of each clip
+
+// #J, the joint in which each joint's bone ends: the only child, or the only one that has children itself. Twist joints
+// and tips beside it carry nothing.
+std::vector<std::optional<Index>> boneEnds(const Skeleton& skeleton) {
+  std::vector<std::vector<Index>> children(skeleton.jointCount());
+  for (Index j = 0; j < skeleton.jointCount(); ++j) {
+    if (skeleton.joints[j].parent) children[*skeleton.joints[j].parent].push_back(j);
+  }
+  std::vector<std::optional<Index>> ends(skeleton.jointCount());
+  for (Index j = 0; j < skeleton.jointCount(); ++j) {
+    std::vector<Index> below = children[j];
+    if (below.size() > 1) std::erase_if(below, [&](Index child) { return children[child].empty(); });
+    if (below.size() == 1) ends[j] = below.front();
+  }
+  return ends;
+}
+
+// A run of bones, each at the end of the one before.
+using Chain = std::vector<Index>;  // its joints
+
+// Those that may be limbs. One that begins at a root is the path to the hips and tells nothing.
+std::vector<Chain> limbsOf(const Skeleton& skeleton) {
+  const std::vector<std::optional<Index>> ends = boneEnds(skeleton);
+  std::vector<bool> begins(ends.size());
+  for (Index j = 0; j < skeleton.jointCount(); ++j) begins[j] = skeleton.joints[j].parent.has_value();
+  for (const std::optional<Index>& end : ends) {
+    if (end) begins[*end] = false;
+  }
+  std::vector<Chain> limbs;
+  for (Index j = 0; j < skeleton.jointCount(); ++j) {
+    Chain chain;
+    for (std::optional<Index> at = j; begins[j] && at; at = ends[*at]) chain.push_back(*at);
+    if (chain.size() > kMinLimbBones) limbs.push_back(std::move(chain));
+  }
+  return limbs;
+}
+
+double heightOf(const std::vector<Vec3>& positions) {
+  const auto [low, high] = std::minmax_element(positions.begin(), positions.end(),
+                                               [](const Vec3& a, const Vec3& b) { return a.y() < b.y(); });
+  return high->y() - low->y();
+}
+
+Pose turnedAboutY(const Skeleton& skeleton, Pose pose, double radians) {
+  const Quat turn(Eigen::AngleAxisd(radians, Vec3::UnitY()));
+  for (Index j = 0; j < skeleton.jointCount(); ++j) {
+    if (skeleton.joints[j].parent) continue;
+    Transform& local = pose.locals[j];
+    local.translation = turn * local.translation;
+    local.rotation = (turn * local.rotation).normalized();
+  }
+  return pose;
+}
+
+// Turned so that the body's left is +X, as files have it at rest: where up and ahead are not sure, readAnatomy goes by
+// that habit, which a frame under way does not keep. Which of both sides is left is surest where names agree with it.
+Pose turnedAhead(const Skeleton& skeleton, const Pose& pose) {
+  constexpr double kMinLevel = 0.5;  // of the left's length: one who lies on a side is left as it is
+  const Vec3 left = readAnatomy(skeleton, pose).axes.left();
+  if (std::hypot(left.x(), left.z()) < kMinLevel) return pose;
+  const double radians = std::atan2(left.z(), left.x());
+  Pose ahead = turnedAboutY(skeleton, pose, radians), back = turnedAboutY(skeleton, pose, radians + kPi);
+  return readAnatomy(skeleton, back).confidence > readAnatomy(skeleton, ahead).confidence ? back : ahead;
+}
+
+}  // namespace
+
+bool hasForm(const Skeleton& skeleton, const Pose& pose) {
+  const std::vector<Chain> limbs = limbsOf(skeleton);
+  if (limbs.size() < kMinLimbs) return true;
+  const std::vector<Vec3> positions = posePositions(skeleton, pose);
+  Mat3 sum = Mat3::Zero();
+  double length = 0;
+  for (const Chain& limb : limbs) {
+    for (std::size_t i = 1; i < limb.size(); ++i) {
+      const Vec3 bone = positions[limb[i]] - positions[limb[i - 1]];
+      const double own = bone.norm();
+      if (!(own > 0)) continue;
+      sum += bone * bone.transpose() / own;
+      length += own;
+    }
+  }
+  if (!(length > 0) || !sum.allFinite()) return true;
+  const Eigen::SelfAdjointEigenSolver<Mat3> solver(sum, Eigen::EigenvaluesOnly);
+  return solver.eigenvalues()[2] < (1 - kOffLine) * length;
+}
+
+std::optional<Pose> poseWithForm(const Skeleton& skeleton, std::span<const Pose> motion) {
+  if (hasForm(skeleton, restPose(skeleton))) return std::nullopt;
+  const Pose* tallest = nullptr;
+  double height = 0;
+  for (const Pose& pose : motion) {
+    const double own = heightOf(posePositions(skeleton, pose));
+    if ((tallest && !(own > height)) || !hasForm(skeleton, pose)) continue;
+    tallest = &pose;
+    height = own;
+  }
+  return tallest ? std::optional(turnedAhead(skeleton, *tallest)) : std::nullopt;
+}
+
+std::optional<Pose> poseWithForm(const Motion& motion) {
+  if (hasForm(motion.skeleton, restPose(motion.skeleton))) return std::nullopt;
+  std::vector<Pose> poses;
+  for (const Clip& clip : motion.clips) {
+    for (int i = 0; i < kMaxMoments; ++i) {
+      poses.push_back(restPose(motion.skeleton));
+      sampleClip(clip, clip.duration() * i / kMaxMoments, poses.back());
+    }
+  }
+  return poseWithForm(motion.skeleton, poses);
+}
+
+Skeleton restingIn(Skeleton skeleton, const Pose& pose) {
+  for (Index j = 0; j < skeleton.jointCount(); ++j) skeleton.joints[j].rest = pose.locals[j];
+  return skeleton;
+}
+
+Skeleton skeletonWithForm(const Motion& motion) {
+  const std::optional<Pose> pose = poseWithForm(motion);
+  return pose ? restingIn(motion.skeleton, *pose) : motion.skeleton;
+}
+
+SkeletonMap matchMotion(const Motion& motion, const Skeleton& target, bool unlikeBodies) {
+  const std::optional<Pose> pose = poseWithForm(motion);
+  return matchSkeletons(motion.skeleton, target, unlikeBodies, pose ? &*pose : nullptr);
+}
+
+}  // namespace limber

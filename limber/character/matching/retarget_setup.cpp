@@ -1,0 +1,274 @@
+#include "limber/character/matching/retarget_setup.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include <fmt/format.h>
+
+#include "limber/character/anatomy/anatomy.h"
+#include "limber/core/known_error.h"
+
+namespace limber {
+
+namespace {
+
+// A motion whose feet come this near to where they are in rest pose (in hip heights) stands on the rest pose's ground.
+constexpr double kSameGround = 0.08;
+constexpr double kFlies = 0.5;         // hip heights over the origin: from there on a rest pose does not stand on it
+constexpr double kStill = 0.4;         // hip heights a second: a lowest foot joint slower than this stands
+constexpr double kFewStand = 0.05;     // share of frames; below it the motion never stands (a run)
+constexpr double kBelowGround = 0.05;  // share of frames that may lie lower than the ground, for noise
+
+double lowest(const std::vector<Index>& joints, const std::vector<Vec3>& positions) {
+  double y = std::numeric_limits<double>::infinity();
+  for (const Index joint : joints) y = std::min(y, positions[joint].y());
+  return y;
+}
+
+// Feet where both have them, else every joint.
+std::vector<Index> groundJoints(const SkeletonMap& map, MapSide side) {
+  std::vector<Index> joints = soleJoints(map, side);
+  return joints.empty() ? matchedJoints(map, side) : joints;
+}
+
+// Heights of the lowest foot joint over a motion, in all frames and while it is still.
+struct LowestHeights {
+  std::vector<double> all, standing;
+  std::size_t soleDown = 0;  // frames in which its sole does not look up
+};
+LowestHeights lowestHeights(const BodyKinematics& kinematics, const NeutralPose& neutral,
+                            const std::vector<Index>& soles, double hipHeight, const PoseSequence& motion) {
+  LowestHeights heights;
+  BodyFrame frame, before;
+  for (const Pose& pose : motion.poses) {
+    kinematics.globals(pose, frame);
+    const auto low = std::min_element(
+        soles.begin(), soles.end(), [&](Index a, Index b) { return frame.positions[a].y() < frame.positions[b].y(); });
+    heights.all.push_back(frame.positions[*low].y());
+    const Quat turn = frame.rotations[*low] * neutral.rotations[*low].conjugate();
+    if ((turn * Vec3::UnitY()).y() > 0) ++heights.soleDown;
+    const double stillWay = kStill * hipHeight * motion.frameSeconds;
+    const bool still = !before.positions.empty() && (frame.positions[*low] - before.positions[*low]).norm() < stillWay;
+    if (still) heights.standing.push_back(heights.all.back());
+    std::swap(frame, before);
+  }
+  return heights;
+}
+
+double quantile(std::vector<double>& values, double share) {
+  const auto rank = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));
+  std::nth_element(values.begin(), rank, values.end());
+  return *rank;
+}
+
+// A rest pose that hangs about the origin instead of standing on it tells nothing about the ground.
+bool standsAt(double ground, double hipHeight) {
+  return ground > -0.25 * hipHeight && ground < kFlies * hipHeight;
+}
+
+// The rest pose's ground where the motion comes down to it, or where soles look up throughout, as a swimmer's; else the
+// middle height of what is lowest and still. People who sit down, lie or jump about are still at many heights, so that
+// middle alone says too little.
+double measuredGround(LowestHeights heights, double restGround, double hipHeight) {
+  if (std::abs(quantile(heights.all, kBelowGround) - restGround) < kSameGround * hipHeight) return restGround;
+  const bool afloat = static_cast<double>(heights.soleDown) < kFewStand * static_cast<double>(heights.all.size());
+  if (afloat && standsAt(restGround, hipHeight)) return restGround;
+  const bool stands =
+      static_cast<double>(heights.standing.size()) > kFewStand * static_cast<double>(heights.all.size());
+  return stands ? quantile(heights.standing, 0.25) : quantile(heights.all, kBelowGround);
+}
+
+double legLength(const SkeletonMap& map, MapSide side, const NeutralPose& pose) {
+  double length = 0;
+  if (!map.isBiped()) return length;
+  for (const Side each : kSides) {
+    const auto at = [&](Segment segment) -> std::optional<Vec3> {
+      const std::optional<Index> joint = firstOfPart(map, side, body_part::leg(each, segment));
+      return joint ? std::optional(pose.restPositions[*joint]) : std::nullopt;
+    };
+    const auto upper = at(Segment::kUpper), lower = at(Segment::kMiddle), foot = at(Segment::kEnd);
+    if (upper && lower && foot) length = std::max(length, (*lower - *upper).norm() + (*foot - *lower).norm());
+  }
+  return length;
+}
+
+double hipHeight(const SkeletonMap& map, MapSide side, const NeutralPose& pose) {
+  return pelvisOf(map, side, pose.positions).y() - lowest(groundJoints(map, side), pose.positions);
+}
+
+// Mean height, over the lowest matched joint, of the joints that legs begin at.
+double legHeight(const std::vector<AnimalLeg>& legs, const SkeletonMap& map, MapSide side, const NeutralPose& pose) {
+  double sum = 0;
+  for (const AnimalLeg& leg : legs) {
+    sum += pose.positions[(side == MapSide::kSource ? leg.source : leg.target).upper].y();
+  }
+  return sum / static_cast<double>(legs.size()) - lowest(matchedJoints(map, side), pose.positions);
+}
+
+// Which way others than people face; these tell it by their limbs.
+Axes axesOf(const Skeleton& skeleton, bool person) {
+  return person ? Axes{} : readAnatomy(skeleton).axes;
+}
+
+std::vector<Index> tailOf(const Skeleton& skeleton) {
+  const Anatomy anatomy = readAnatomy(skeleton);
+  const Part* tail = anatomy.find(PartKind::kTail);
+  return tail ? tail->joints : std::vector<Index>();
+}
+
+// With the matched limbs of bodies of another kind as the motion has them in the mean: a person's arms hang, whatever
+// the rest pose, and a foreleg that follows one stands. Of twins the target is posed as that by turns alone: feet on
+// roots of their own, led elsewhere in that frame, would make the source's legs longer or shorter than its twin's.
+Pose restOf(const Skeleton& source, std::span<const Pose> motion, const SkeletonMap& map) {
+  Pose rest = uprightPose(source, motion, map, MapSide::kSource);
+  if (map.twins) return turnedAlone(source, std::move(rest));
+  if (!map.unlikeBodies) return rest;
+  for (const JointMatch& match : map.matches) {
+    const PartKind kind = match.part.kind;
+    if (kind != PartKind::kLeg && kind != PartKind::kArm && kind != PartKind::kWing && kind != PartKind::kFin) continue;
+    for (const Index joint : match.source) {
+      Eigen::Vector4d sum = Eigen::Vector4d::Zero();
+      for (const Pose& pose : motion) {
+        const Eigen::Vector4d turn = pose.locals[joint].rotation.coeffs();
+        sum += sum.dot(turn) < 0 ? Eigen::Vector4d(-turn) : turn;
+      }
+      if (sum.norm() > 0) rest.locals[joint].rotation = Quat(Eigen::Vector4d(sum.normalized()));
+    }
+  }
+  return rest;
+}
+
+// A map of the hips alone, or joints that all lie in one place, leave nothing to scale by.
+void checkSize(double size, const char* whose, const SkeletonMap& map) {
+  if (size > 0) return;
+  throw KnownError(
+      ErrorKind::kTooFewMatched,
+      {ErrorCode::kBadData, fmt::format("the matched joints do not tell how large the {}'s body is", whose),
+       map.matches.size() == 1 ? nameOf(map.matches.front().part) : "",
+       "match parts that lie further apart, such as hips, head and feet"});
+}
+
+}  // namespace
+
+RetargetSetup::RetargetSetup(const Skeleton& from, const Skeleton& to, SkeletonMap matches,
+                             const RetargetOptions& asked, const PoseSequence* motion)
+    : source(&from),
+      target(&to),
+      map((checkSkeletonMap(matches, from, to), std::move(matches))),
+      options(asked),
+      person(map.isBiped()),
+      quadruped(map.isQuadruped()),
+      sourceRest(restOf(from, motion ? std::span(motion->poses) : std::span<const Pose>(), map)),
+      targetRest(map.twins ? poseAsTwin(from, sourceRest, to, *map.twins) : restPose(to)),
+      sourceNeutral(neutralPose(from, sourceRest, map, MapSide::kSource, axesOf(from, person))),
+      targetNeutral(map.twins ? neutralPoseIn((sourceNeutral.toBody * map.twins->turn.conjugate()).normalized(), to,
+                                              targetRest, map, MapSide::kTarget)
+                              : neutralPose(to, targetRest, map, MapSide::kTarget, axesOf(to, person))),
+      sourceKinematics(from, sourceNeutral.toBody),
+      targetKinematics(to, targetNeutral.toBody) {
+  if (person) {
+    sourceHipHeight = hipHeight(map, MapSide::kSource, sourceNeutral);
+    targetHipHeight = hipHeight(map, MapSide::kTarget, targetNeutral);
+  } else {
+    const BodySize one = bodySize(map, MapSide::kSource, sourceNeutral),
+                   other = bodySize(map, MapSide::kTarget, targetNeutral);
+    const bool stand = quadruped || (one.stands() && other.stands());
+    sourceHipHeight = stand ? one.height : one.across;
+    targetHipHeight = stand ? other.height : other.across;
+    animalLegs = limber::animalLegs(map, from, to, sourceNeutral, targetNeutral);
+  }
+  checkSize(sourceHipHeight, "motion", map);
+  checkSize(targetHipHeight, "character", map);
+  scale = targetHipHeight / sourceHipHeight;
+  if (!animalLegs.empty()) {
+    scale = legHeight(animalLegs, map, MapSide::kTarget, targetNeutral) /
+            legHeight(animalLegs, map, MapSide::kSource, sourceNeutral);
+  }
+  const double sourceLegs = legLength(map, MapSide::kSource, sourceNeutral);
+  const double targetLegs = legLength(map, MapSide::kTarget, targetNeutral);
+  if (sourceLegs > 0 && targetLegs > 0) {
+    if (options.rootScale == RootScale::kHipHeight) legShare = targetLegs / sourceLegs / scale;
+    if (options.rootScale == RootScale::kLegLength) scale = targetLegs / sourceLegs;
+  }
+  if (options.rootScale == RootScale::kNone) scale = 1;
+
+  const std::vector<Index> soles = groundJoints(map, MapSide::kSource);
+  sourceLowest = lowest(soles, sourceNeutral.positions);
+  targetLowest = lowest(groundJoints(map, MapSide::kTarget), targetNeutral.positions);
+  const double restGround = lowest(soles, sourceNeutral.restPositions);
+  sourceGround = options.sourceGround.value_or(restGround);
+  if (!options.sourceGround && motion && !motion->poses.empty()) {
+    const LowestHeights heights = lowestHeights(sourceKinematics, sourceNeutral, soles, sourceHipHeight, *motion);
+    sourceGround = measuredGround(heights, restGround, sourceHipHeight);
+  }
+  // Of skeletons that hang about the origin, people stand at the source's height, others, who go their way from rest,
+  // as far from there as the source.
+  targetGround = lowest(groundJoints(map, MapSide::kTarget), targetNeutral.restPositions);
+  // What rests in the air flies: its feet have no ground to keep to.
+  if ((targetGround >= kFlies * targetHipHeight && !quadruped) || map.unlikeBodies) animalLegs.clear();
+  if (!animalLegs.empty()) targetTail = tailOf(to);
+  if (!standsAt(targetGround, targetHipHeight)) {
+    if (!person)
+      targetGround += scale * (sourceGround - restGround);
+    else if (!options.characterStands)
+      targetGround = sourceGround * scale;
+  }
+  sameBody = isSameBody();
+  // Two that rest at one height are in one space: where the recording's ground is not that of its rest pose, neither is
+  // the target's.
+  const auto restsAt = [&](const Skeleton& skeleton, MapSide side, const BodyKinematics& kinematics) {
+    BodyFrame frame;
+    kinematics.globals(restPose(skeleton), frame);
+    return lowest(groundJoints(map, side), frame.positions);
+  };
+  const double apart =
+      restsAt(to, MapSide::kTarget, targetKinematics) - scale * restsAt(from, MapSide::kSource, sourceKinematics);
+  const bool oneSpace = std::abs(apart) < kSameGround * targetHipHeight;
+  if (person && sameBody && oneSpace && !options.sourceGround) targetGround = scale * sourceGround;
+}
+
+// All bones alike, of whatever size; the rounding of scales that are not even is no difference.
+bool RetargetSetup::isTwin(const Twins& twins) const {
+  constexpr double kOff = 1e-4;  // hip heights of the target, and of its size
+  if (std::abs(scale / twins.scale - 1) > kOff) return false;
+  const std::vector<Vec3> from = posePositions(*source, turnedAlone(*source, sourceRest)),
+                          to = posePositions(*target, targetRest);
+  std::vector<Index> roots(to.size());
+  for (Index t = 0; t < to.size(); ++t) {
+    const std::optional<Index>& parent = target->joints[t].parent;
+    roots[t] = parent ? roots[*parent] : t;
+    const Vec3 way = twins.scale * (twins.turn * (from[twins.sourceOf[t]] - from[twins.sourceOf[roots[t]]]));
+    if ((way - (to[t] - to[roots[t]])).norm() > kOff * targetHipHeight) return false;
+  }
+  return true;
+}
+
+bool RetargetSetup::isSameBody() const {
+  const std::vector<Vec3>&from = sourceNeutral.positions, &to = targetNeutral.positions;
+  if (map.twins) return isTwin(*map.twins);
+  if (std::abs(scale - 1) > 1e-9) return false;
+  const auto isAt = [&](Index s, Index t) { return (from[s] - to[t]).norm() <= 1e-6 * targetHipHeight; };
+  Index alike = 0;
+  while (alike < from.size() && from.size() == to.size() && isAt(alike, alike)) ++alike;
+  if (alike == to.size()) return true;
+  // Or the target lacks joints of the source, and all that it has follow one.
+  std::size_t followed = 0;
+  for (const JointMatch& match : map.matches) {
+    if (match.source.size() > 1 || match.target.size() > 1) return false;
+    if (!isAt(match.source.front(), match.target.front())) return false;
+    ++followed;
+  }
+  return followed == to.size();
+}
+
+Vec3 RetargetSetup::placeOf(const Vec3& pelvis) const {
+  Vec3 place = scale * pelvis;
+  // By the legs about where they carry it; wholly down on the ground.
+  const double height = (pelvis.y() - sourceGround) / sourceHipHeight, below = std::clamp(height, 0.0, 1.0);
+  const double byLegs = (legShare - 1) * (height > 1 ? height - 1 : below * (below - 1));
+  place.y() = targetGround + scale * sourceHipHeight * (height + byLegs);
+  return place;
+}
+
+}  // namespace limber

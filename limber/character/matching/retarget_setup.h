@@ -1,0 +1,100 @@
+// What every retargeting method starts from: two skeletons, which joint follows which, and how their spaces compare.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "limber/character/matching/animal_legs.h"
+#include "limber/character/matching/body_frame.h"
+#include "limber/character/matching/neutral_pose.h"
+#include "limber/character/matching/skeleton_map.h"
+
+namespace limber {
+
+// Frames of a whole motion, evenly spaced.
+struct PoseSequence {
+  std::vector<Pose> poses;
+  double frameSeconds = 1.0 / 30;
+};
+
+// What a user says of a foot for a while, whatever its motion tells: whether it is planted.
+struct ContactEdit {
+  std::string foot;         // the source's joint (FootSpans::foot)
+  double from = 0, to = 0;  // seconds of the motion
+  bool planted = false;
+};
+
+// A character's skin, as far as it matters where its body is: places in the frames of the joints that carry them (their
+// rotations, metres). Made by makeBodySkin (limber/motion/limbs/body/body_skin.h).
+struct BodySkin {
+  std::vector<Vec3> places;
+  std::vector<Index> joints;
+};
+
+enum class RootScale {
+  kHipHeight,  // from the ground to the hips
+  kLegLength,  // of upper and lower leg
+  kNone,       // the way stays as long as it is
+};
+
+struct RetargetOptions {
+  RootScale rootScale = RootScale::kHipHeight;
+  // limb-ik: where a hand goes. 0: where its turned bones bring it; 1: where the source's hand is, scaled as the root's
+  // way is (Koerner's d).
+  double reach = 0;
+  bool contacts = true;                        // limb-ik: keep planted feet, touching hands and arms outside the body
+  std::vector<ContactEdit> contactEdits = {};  // of several for one moment the last one counts
+  bool smoothMotion = true;         // whole motions, with contacts: no rougher than the source (motion_smoothing.h)
+  std::string solver = "two-bone";  // limb-ik: of ikMethods()
+  // Height of the ground under the source, metres; none: measured from the motion where there is one, else from the
+  // rest pose.
+  std::optional<double> sourceGround;
+  // The character's rest pose stands on its ground, wherever that is, as models with a surface do. Else a person who
+  // hangs about the origin, as bare skeletons may, is put where the motion's ground is.
+  bool characterStands = false;
+  std::shared_ptr<const BodySkin> skin = nullptr;  // the character's: arms stay outside it (ArmClearance)
+};
+
+// Immutable once made; the skeletons must outlive it, and have no negative scales (plain_skeleton.h). `motion`, if
+// given, is what will be retargeted: it tells where the ground is, and how the source stands where its rest pose does
+// not.
+struct RetargetSetup {
+  RetargetSetup(const Skeleton& source, const Skeleton& target, SkeletonMap map, const RetargetOptions& options,
+                const PoseSequence* motion = nullptr);
+
+  // Where the target's pelvis stands when the source's stands at `pelvis`, both in their person's space.
+  Vec3 placeOf(const Vec3& pelvis) const;
+
+  const Skeleton* source;
+  const Skeleton* target;
+  SkeletonMap map;
+  RetargetOptions options;
+  bool person = false;  // SkeletonMap::isBiped
+  // All bones are alike but for their size, and each joint of the target follows one: then every joint moves as its
+  // partner does, from where it rests, and there is nothing to correct.
+  bool sameBody = false;
+  bool quadruped =
+      false;        // SkeletonMap::isQuadruped, of no twins; else joints are matched one by one, and all may move
+  Pose sourceRest;  // the rest pose, or what stands in for it (uprightPose)
+  Pose targetRest;  // the rest pose; of twins the pose in which it rests as the source does (poseAsTwin)
+  NeutralPose sourceNeutral, targetNeutral;
+  BodyKinematics sourceKinematics, targetKinematics;
+  // Target metres for a source metre of the root's way. Of others than people with legs: by where these begin.
+  double scale = 1;
+  // The legs' share of the hips' height, over the source's: where ankles are high, bent legs lower the hips less.
+  double legShare = 1;
+  double sourceHipHeight = 1,
+         targetHipHeight = 1;                 // of no people: mean height of the joints, or size of what lies flat
+  double sourceGround = 0, targetGround = 0;  // heights of the lowest foot joint of someone standing
+  double sourceLowest = 0, targetLowest = 0;  // likewise, in the neutral poses
+  std::vector<AnimalLeg> animalLegs;          // of no people that stand on their joints
+  std::vector<Index> targetTail;              // of no people with legs: it is kept off the ground
+
+ private:
+  bool isSameBody() const;
+  bool isTwin(const Twins& twins) const;
+};
+
+}  // namespace limber

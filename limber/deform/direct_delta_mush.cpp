@@ -1,0 +1,403 @@
+#include "limber/deform/direct_delta_mush.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "limber/core/error.h"
+#include "limber/core/parallel.h"
+#include "limber/deform/deform_call.h"
+#include "limber/deform/implicit_smoother.h"
+
+namespace limber {
+
+namespace {
+
+// Of the surroundings' mean squared distance, as if they had it in every direction; with it R of a flat or straight
+// surface is known. Small against what a bend does to it.
+constexpr double kRoundness = 1e-3;
+// The same where all surroundings lie at one place, in squared longest sides.
+constexpr double kLeastRoundness = 1e-12;
+
+// Moments of weighted points up to the second order.
+struct PointMoments {
+  double weight = 0;
+  Vec3 first = Vec3::Zero();
+  Mat3 second = Mat3::Zero();
+
+  PointMoments& operator+=(const PointMoments& other) {
+    weight += other.weight;
+    first += other.first;
+    second += other.second;
+    return *this;
+  }
+  bool isFinite() const { return std::isfinite(weight) && first.allFinite() && second.allFinite(); }
+};
+
+PointMoments operator*(double factor, const PointMoments& m) {
+  return {factor * m.weight, factor * m.first, factor * m.second};
+}
+
+PointMoments operator-(const PointMoments& a, const PointMoments& b) {
+  return {a.weight - b.weight, a.first - b.first, a.second - b.second};
+}
+
+// About a point that lies at `offset` from the one they are about. Bit for bit symmetric as `m` is: where nothing
+// moves, nothing must seem to turn.
+PointMoments about(const PointMoments& m, const Vec3& offset) {
+  const Mat3 mixed = m.first * offset.transpose(), square = offset * offset.transpose();
+  const Mat3 both = mixed + mixed.transpose();
+  return {m.weight, m.first - m.weight * offset, (m.second - both) + m.weight * square};
+}
+
+struct VertexWeight {
+  Index vertex = 0;
+  double weight = 0;
+};
+
+// A joint's part in a vertex' row.
+struct JointPart {
+  Index vertex = 0, joint = 0;
+  PointMoments moments;
+};
+
+enum class MomentOrder { kFirst, kSecond };
+
+// Every joint's parts in the rows of all vertices.
+class MomentTable {
+ public:
+  MomentTable(const SmoothingSurface& surface, Index jointCount, const DirectDeltaMushOptions& options,
+              MomentOrder order)
+      : surface_(surface),
+        options_(options),
+        order_(order),
+        rotation_(surface, surface.stepsFor(options.rotationReach) / options.smoothings, options.smoothings),
+        translation_(surface, surface.stepsFor(options.translationReach) / options.smoothings, options.smoothings),
+        boundTo_(jointCount) {
+    gatherWeights();
+    makePlaces();
+  }
+
+  // Calls addRow(vertex, parts, whole) of each vertex in order: its joints' parts, strongest first, and the moments of
+  // all its surroundings.
+  template <class AddRow>
+  void forEachRow(const AddRow& addRow) const {
+    constexpr double kRounding = 1e-6;
+    const std::vector<PointMoments> whole = momentsOf(everything_), bound = momentsOf(bound_);
+    std::vector<std::vector<JointPart>> ofVertex = partsOfVertices();
+    for (Index v = 0; v < surface_.vertexCount(); ++v) {
+      std::vector<JointPart>& parts = ofVertex[v];
+      std::stable_sort(parts.begin(), parts.end(),
+                       [](const JointPart& a, const JointPart& b) { return a.moments.weight > b.moments.weight; });
+      if (order_ == MomentOrder::kFirst) dropWeakest(parts);
+      PointMoments all = bound[v];
+      if (std::abs(all.weight - 1) < kRounding) all = whole[v], all.weight = 1;
+      completeParts(parts, all);
+      addRow(v, parts, whole[v]);
+    }
+  }
+
+  const Vec3& place(Index vertex) const { return places_[vertex]; }
+  Index jointCount() const { return static_cast<Index>(boundTo_.size()); }
+
+ private:
+  void gatherWeights() {
+    for (Index v = 0; v < surface_.vertexCount(); ++v) {
+      everything_.push_back({v, 1});
+      double sum = 0;
+      for (Index slot = 0; slot < surface_.weights.slots; ++slot) {
+        const double weight = surface_.weights.weightsOf(v)[slot];
+        if (!(weight > 0)) continue;
+        boundTo_[surface_.weights.jointsOf(v)[slot]].push_back({v, weight});
+        sum += weight;
+      }
+      if (sum > 0) bound_.push_back({v, sum});
+    }
+  }
+
+  Vec3 position(Index vertex) const { return surface_.positions[vertex].cast<double>(); }
+
+  // p = B u.
+  void makePlaces() {
+    std::vector<double> x(std::size_t{ImplicitSmoother::kColumns} * surface_.vertexCount());
+    for (Index v = 0; v < surface_.vertexCount(); ++v) {
+      for (int i = 0; i < 3; ++i) x[rotation_.place(v) + i] = position(v)[i];
+    }
+    rotation_.smooth(x, 3);
+    for (Index v = 0; v < surface_.vertexCount(); ++v) {
+      const double* at = x.data() + rotation_.place(v);
+      Vec3 place(at[0], at[1], at[2]);
+      const bool alone = surface_.stiffness.coeff(v, v) == 0;
+      places_.push_back(alone || !place.allFinite() ? position(v) : place);
+    }
+  }
+
+  // Moments of the smoothed weights about each vertex' smoothed place; by the paper's Psi and w' (equations 15 and 18).
+  std::vector<PointMoments> momentsOf(const std::vector<VertexWeight>& weights) const {
+    // About their middle, so that little is lost by taking differences.
+    Vec3 middle = Vec3::Zero();
+    for (const VertexWeight& w : weights) middle += position(w.vertex) / static_cast<double>(weights.size());
+    const std::size_t size = std::size_t{ImplicitSmoother::kColumns} * surface_.vertexCount();
+    std::vector<double> lower(size, 0.0), upper(size, 0.0), translation(size, 0.0);
+    for (const VertexWeight& w : weights) {
+      const Vec3 arm = position(w.vertex) - middle;
+      double* low = lower.data() + rotation_.place(w.vertex);
+      double* high = upper.data() + rotation_.place(w.vertex);
+      low[0] += w.weight;
+      translation[translation_.place(w.vertex)] += w.weight;
+      for (int i = 0; i < 3; ++i) {
+        low[1 + i] += w.weight * arm[i];
+        low[4 + i] += w.weight * arm[i] * arm[i];
+        high[i] += w.weight * arm[i] * arm[(i + 1) % 3];
+      }
+    }
+    rotation_.smooth(lower, order_ == MomentOrder::kFirst ? 4 : 7);
+    if (order_ == MomentOrder::kSecond) rotation_.smooth(upper, 3);
+    translation_.smooth(translation, 1);
+    std::vector<PointMoments> result;
+    for (Index v = 0; v < surface_.vertexCount(); ++v) {
+      const double* low = lower.data() + rotation_.place(v);
+      const double* high = upper.data() + rotation_.place(v);
+      PointMoments m = {low[0], {low[1], low[2], low[3]}, Mat3::Zero()};
+      m.second << low[4], high[0], high[2], high[0], low[5], high[1], high[2], high[1], low[6];
+      m = (1 - options_.translationWeight) * about(m, places_[v] - middle);
+      m.weight += options_.translationWeight * translation[translation_.place(v)];
+      if (surface_.stiffness.coeff(v, v) == 0 || !m.isFinite()) m = {low[0], Vec3::Zero(), Mat3::Zero()};
+      result.push_back(m);
+    }
+    return result;
+  }
+
+  std::vector<JointPart> partsOf(Index joint) const {
+    std::vector<JointPart> parts;
+    const std::vector<PointMoments> moments = momentsOf(boundTo_[joint]);
+    for (Index v = 0; v < moments.size(); ++v) {
+      if (moments[v].weight >= options_.leastWeight) parts.push_back({v, joint, moments[v]});
+    }
+    return parts;
+  }
+
+  // Strongest first; a whole entry of four is left out where it costs more than it changes.
+  void dropWeakest(std::vector<JointPart>& parts) const {
+    if (parts.size() > options_.mostJoints) parts.resize(options_.mostJoints);
+    while (parts.size() > 4) {
+      const std::size_t first = (parts.size() - 1) / 4 * 4;
+      double held = 0;
+      for (std::size_t i = first; i < parts.size(); ++i) held += parts[i].moments.weight;
+      if (held >= options_.leastEntry) return;
+      parts.resize(first);
+    }
+  }
+
+  // What small parts had is given to the others, so that one motion of all joints stays one motion.
+  static void completeParts(std::vector<JointPart>& parts, const PointMoments& bound) {
+    PointMoments kept;
+    for (const JointPart& part : parts) kept += part.moments;
+    const PointMoments missing = bound - kept;
+    for (JointPart& part : parts) part.moments += part.moments.weight / kept.weight * missing;
+  }
+
+  std::vector<std::vector<JointPart>> partsOfVertices() const {
+    std::vector<std::vector<JointPart>> ofJoint(boundTo_.size());
+    parallelFor(boundTo_.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t joint = begin; joint < end; ++joint) {
+        if (!boundTo_[joint].empty()) ofJoint[joint] = partsOf(static_cast<Index>(joint));
+      }
+    });
+    std::vector<std::vector<JointPart>> ofVertex(surface_.vertexCount());
+    for (std::vector<JointPart>& parts : ofJoint) {
+      for (const JointPart& part : parts) ofVertex[part.vertex].push_back(part);
+      parts = {};
+    }
+    return ofVertex;
+  }
+
+  const SmoothingSurface& surface_;
+  const DirectDeltaMushOptions& options_;
+  MomentOrder order_;
+  ImplicitSmoother rotation_, translation_;
+  std::vector<std::vector<VertexWeight>> boundTo_;  // by joint
+  std::vector<VertexWeight> everything_, bound_;
+  std::vector<Vec3> places_;
+};
+
+void addMatrix(const PointMoments& m, std::vector<float>& to) {
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) to.push_back(static_cast<float>(m.second(row, column)));
+    to.push_back(static_cast<float>(m.first[row]));
+  }
+  for (int column = 0; column < 3; ++column) to.push_back(static_cast<float>(m.first[column]));
+  to.push_back(static_cast<float>(m.weight));
+}
+
+void addBase(const Mat3& second, const Vec3& place, std::vector<float>& to) {
+  for (int column = 0; column < 3; ++column) {
+    for (int row = 0; row < 3; ++row) to.push_back(static_cast<float>(second(row, column)));
+    to.push_back(0);
+  }
+  for (int i = 0; i < 3; ++i) to.push_back(static_cast<float>(place[i]));
+  to.push_back(static_cast<float>(1 / second.trace()));
+}
+
+// Four joints from `first` on.
+void addEntry(const std::vector<JointPart>& parts, std::size_t first, const Vec3& place, DirectDeltaMushRows& rows) {
+  const std::size_t begin = rows.moments.size();
+  rows.moments.resize(begin + kFloatsPerMoments, 0.0f);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const bool there = first + i < parts.size();
+    rows.joints.push_back(there ? parts[first + i].joint : parts.front().joint);
+    if (!there) continue;
+    const PointMoments& moments = parts[first + i].moments;
+    const Vec3 sum = moments.first + moments.weight * place;
+    for (std::size_t axis = 0; axis < 3; ++axis) rows.moments[begin + 4 * axis + i] = static_cast<float>(sum[axis]);
+    rows.moments[begin + 12 + i] = static_cast<float>(moments.weight);
+  }
+}
+
+// About the origin: only the linear part of the stretch and the rotation of the motion are used. Whether any stretches.
+bool packJoints(std::span<const Affine> transforms, float* columns, float* stretches, float* motions) {
+  bool stretched = false;
+  for (std::size_t j = 0; j < transforms.size(); ++j) {
+    packColumns(transforms[j], columns + kFloatsPerColumns * j);
+    stretched |=
+        packMotion(transforms[j], Vec3::Zero(), motions + kFloatsPerMotion * j, stretches + kFloatsPerColumns * j);
+  }
+  return stretched;
+}
+
+template <class Rows>
+std::shared_ptr<Rows> emptyRows(const SmoothingSurface& surface, const MomentTable& table) {
+  auto rows = std::make_shared<Rows>();
+  rows->rowOf = surface.weldedVertex;
+  rows->jointCount = table.jointCount();
+  rows->begin.push_back(0);
+  return rows;
+}
+
+void checkOptions(const DirectDeltaMushOptions& options) {
+  const bool right = options.rotationReach > 0 && options.translationReach > 0 && options.smoothings > 0 &&
+                     options.translationWeight >= 0 && options.translationWeight < 1 && options.leastWeight >= 0 &&
+                     options.leastWeight <= 0.1 && options.mostJoints > 0 && options.leastEntry >= 0 &&
+                     options.leastEntry <= 0.5;
+  if (!right) throw Error(ErrorCode::kBadArgument, "an option of direct delta mush is out of its range");
+}
+
+// A job with the arrays that both forms have in their rows.
+template <class Rows>
+DeformJob rowsJob(const DeformInput& input, const DeformOutput& output, const Rows& rows) {
+  DeformJob job = deformJob(input, output);
+  job.rowOf = rows.rowOf.data();
+  job.rowBegin = rows.begin.data();
+  job.rowJoints = rows.joints.data();
+  job.rowMoments = rows.moments.data();
+  return job;
+}
+
+}  // namespace
+
+std::shared_ptr<const DirectDeltaMushRows> directDeltaMushRows(const BoundSurface& surface, Index jointCount,
+                                                               const DirectDeltaMushOptions& options) {
+  checkOptions(options);
+  const SmoothingSurface smooth = smoothingSurface(surface);
+  const MomentTable table(smooth, jointCount, options, MomentOrder::kFirst);
+  auto rows = emptyRows<DirectDeltaMushRows>(smooth, table);
+  table.forEachRow([&](Index v, const std::vector<JointPart>& parts, const PointMoments&) {
+    const Vec3& place = table.place(v);
+    for (std::size_t first = 0; first < parts.size(); first += 4) addEntry(parts, first, place, *rows);
+    rows->begin.push_back(static_cast<Index>(rows->joints.size() / 4));
+    for (int axis = 0; axis < 3; ++axis) rows->places.push_back(static_cast<float>(place[axis]));
+    rows->places.push_back(0);
+  });
+  return rows;
+}
+
+std::shared_ptr<const FullDirectDeltaMushRows> fullDirectDeltaMushRows(const BoundSurface& surface, Index jointCount,
+                                                                       const DirectDeltaMushOptions& options) {
+  checkOptions(options);
+  const SmoothingSurface smooth = smoothingSurface(surface);
+  const MomentTable table(smooth, jointCount, options, MomentOrder::kSecond);
+  auto rows = emptyRows<FullDirectDeltaMushRows>(smooth, table);
+  table.forEachRow([&](Index v, std::vector<JointPart>& parts, PointMoments whole) {
+    const double round =
+        kRoundness / 3 * whole.second.trace() + kLeastRoundness * smooth.longestSide * smooth.longestSide;
+    for (JointPart& part : parts) {
+      part.moments.second.diagonal().array() += round * part.moments.weight;
+      rows->joints.push_back(part.joint);
+      addMatrix(part.moments, rows->moments);
+    }
+    rows->begin.push_back(static_cast<Index>(rows->joints.size()));
+    whole.second.diagonal().array() += round;
+    addBase(whole.second, table.place(v), rows->bases);
+  });
+  return rows;
+}
+
+std::shared_ptr<const DeformPreparation> prepareDirectDeltaMush(const BoundSurface& surface, Index jointCount) {
+  return directDeltaMushRows(surface, jointCount);
+}
+
+std::shared_ptr<const DeformRows> directDeltaMushDrawRows(const BoundSurface& surface,
+                                                          const std::shared_ptr<const DeformPreparation>& preparation) {
+  auto rows = std::dynamic_pointer_cast<const DirectDeltaMushRows>(preparation);
+  if (!rows || rows->rowOf.size() != surface.positions.size()) refusePreparation();
+  return rows;
+}
+
+std::shared_ptr<const DeformPreparation> prepareFullDirectDeltaMush(const BoundSurface& surface, Index jointCount) {
+  return fullDirectDeltaMushRows(surface, jointCount);
+}
+
+std::size_t directDeltaMushScratch(std::size_t /*vertexCount*/, Index jointCount) {
+  return (kFloatsPerMotion + 2 * kFloatsPerColumns) * jointCount + kScratchAlignment;
+}
+
+void directDeltaMush(const DeformInput& input, const DeformOutput& output, std::span<float> scratch) {
+  const Index jointCount = static_cast<Index>(input.transforms.size());
+  checkDeformCall(input, output, scratch.size(), directDeltaMushScratch(input.positions.size(), jointCount));
+  const auto& rows = preparationOf<DirectDeltaMushRows>(input);
+  checkPreparedFor(rows.rowOf.size(), rows.jointCount, input);
+  float* columns = alignedScratch(scratch);
+  float* stretches = columns + kFloatsPerColumns * jointCount;
+  float* motions = stretches + kFloatsPerColumns * jointCount;
+  const bool stretched = packJoints(input.transforms, columns, stretches, motions);
+
+  DeformJob job = rowsJob(input, output, rows);
+  job.columns = columns;
+  job.stretches = stretches;
+  job.motions = motions;
+  job.rowPlaces = rows.places.data();
+  runDeformJob(directKernels().direct[job.outNormals != nullptr][stretched], job, input.positions.size());
+}
+
+std::size_t fullDirectDeltaMushScratch(std::size_t /*vertexCount*/, Index jointCount) {
+  return (kFloatsPerMotion + 3 * kFloatsPerColumns) * jointCount + kScratchAlignment;
+}
+
+void fullDirectDeltaMush(const DeformInput& input, const DeformOutput& output, std::span<float> scratch) {
+  const Index jointCount = static_cast<Index>(input.transforms.size());
+  checkDeformCall(input, output, scratch.size(), fullDirectDeltaMushScratch(input.positions.size(), jointCount));
+  const auto& rows = preparationOf<FullDirectDeltaMushRows>(input);
+  checkPreparedFor(rows.rowOf.size(), rows.jointCount, input);
+  float* columns = alignedScratch(scratch);
+  float* stretches = columns + kFloatsPerColumns * jointCount;
+  float* turns = stretches + kFloatsPerColumns * jointCount;
+  float* motions = turns + kFloatsPerColumns * jointCount;
+  const bool stretched = packJoints(input.transforms, columns, stretches, motions);
+  for (Index j = 0; j < jointCount; ++j) {
+    const float* motion = motions + kFloatsPerMotion * j;
+    const Quat rotation(motion[3], motion[0], motion[1], motion[2]);
+    packColumns(Affine(rotation.normalized()), turns + kFloatsPerColumns * j);
+  }
+
+  DeformJob job = rowsJob(input, output, rows);
+  job.columns = columns;
+  job.stretches = stretches;
+  job.turns = turns;
+  job.motions = motions;
+  job.rowBases = rows.bases.data();
+  runDeformJob(baselineFullDirectKernels().direct[job.outNormals != nullptr][stretched], job, input.positions.size());
+}
+
+}  // namespace limber

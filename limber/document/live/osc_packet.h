@@ -1,0 +1,28 @@
+// Packets of Open Sound Control 1.0 (opensoundcontrol.stanford.edu), as VMC sends them: messages, alone or in bundles.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "limber/core/file/file.h"
+
+namespace limber {
+
+// A number or a text; the text is the packet's own memory.
+using OscValue = std::variant<std::int32_t, float, std::string_view>;
+
+struct OscMessage {
+  std::string_view address;  // "/VMC/Ext/Bone/Pos", in the packet's own memory
+  std::vector<OscValue> values;
+};
+
+// Calls `take` for each message, in their order, those of bundles in bundles (8 deep) too; when a bundle is due is not
+// looked at. False where the packet is none, from the place on where it breaks the format: a text without its end,
+// sizes that are no multiples of four or lead out of the packet, values of other types than i, f, s, T, F, N and I,
+// more than 32 of them. Memory is that of one message.
+bool readOscPacket(ByteSpan packet, const std::function<void(const OscMessage&)>& take);
+
+}  // namespace limber

@@ -1,0 +1,16 @@
+// A whole document turned, with nothing in it changed.
+#pragma once
+
+#include <string>
+
+#include "limber/core/types.h"
+#include "limber/document/asset.h"
+
+namespace limber {
+
+// Puts what the scenes show below new nodes that turn it about the world's origin, one for each scene that shows
+// something else. A document without scenes gets one. Skinned meshes at a scene's root stay there: only their joints
+// place them.
+void turnScene(Asset& asset, const Quat& turn, const std::string& name);
+
+}  // namespace limber

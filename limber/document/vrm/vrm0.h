@@ -1,0 +1,20 @@
+// VRM 0.x as VRM 1.0.
+#pragma once
+
+#include "limber/document/asset.h"
+
+namespace limber {
+
+// Puts VRMC_vrm, VRMC_springBone and VRMC_materials_mtoon in the place of the extension "VRM": bones, meta
+// (vrm_meta.h), expressions, what the wearer sees, gaze, springs with their colliders, MToon materials. Nothing where
+// the document has no such extension. A model of VRM 0.x faces -Z; all that the scene shows is turned half round by a
+// node above it, so that joints, vertices and clips stay as they are.
+//
+// What 1.0 has no place for is left out with warnings: "vrm0-curves" (gaze by curves), "vrm0-materials" (shaders other
+// than MToon, unlit ones and glTF's: these stay as glTF shows them), "vrm0-expressions" (what they change of a material
+// and 1.0 cannot).
+//
+// VRM 0.x: vrm-specification/specification/0.0; where that is silent, as three-vrm and UniVRM read it.
+void upgradeVrm0(Asset& asset);
+
+}  // namespace limber

@@ -1,0 +1,28 @@
+// The judge's figures (retarget_judge.h, known_answers.h, body_contacts.h) over many files, in two halves.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "limber/evaluate/motion/retarget_table.h"
+
+namespace limber {
+
+struct AnswerScore {
+  std::string motion, change, method;
+  bool heldOut = false;
+  double error = 0;  // errorOfAnswer, heights
+};
+
+// Every clip of the motions, and of the characters that have some, onto the bodies of knownAnswers; characters onto
+// themselves only. `mostFrames` of each clip.
+std::vector<AnswerScore> scoreAnswers(const RetargetTrial& trial, Progress& progress, Warnings& skipped);
+
+// In Markdown: a line for each measure, for each method two columns, of what constants may be set by and of what is
+// held out (a pair is, where its motion or its character is): means, worst values in brackets. Below it how contacts of
+// the body with itself are kept (scoreContact). `scores` with verdicts (RetargetTrial::judge).
+std::string judgeTable(std::span<const RetargetScore> scores, std::span<const AnswerScore> answers);
+std::string answersTsv(std::span<const AnswerScore> answers);
+
+}  // namespace limber

@@ -1,0 +1,32 @@
+// What is compared when weights are: a mesh, its skeleton and the weights between them.
+#pragma once
+
+#include <vector>
+
+#include "limber/geometry/mesh/tri_mesh.h"
+#include "limber/geometry/mesh/weld.h"
+#include "limber/skeleton/skin_weights.h"
+
+namespace limber {
+
+struct Asset;
+
+struct SkinnedModel {
+  TriMesh mesh;  // vertices as the file has them, not welded, in bind pose
+  Skeleton skeleton;
+  SkinWeights weights;                 // of #V vertices; need not sum to 1, may be 0 in all slots
+  std::vector<StoredVertices> stored;  // how exactly the vertices are known, for prepareMesh
+};
+
+// The surface with blend shapes as the nodes have them, and in one bind pose (withJoinedBinds). Throws Error
+// kUnsupported where the asset has no rig.
+SkinnedModel readSkinnedModel(const Asset& asset);
+
+// The model with one vertex for each position, that of the lowest vertex there, whose weights it has to a sum of 1, and
+// without degenerate triangles. Errors and cost of prepareMesh.
+SkinnedModel weldedModel(const SkinnedModel& model);
+
+// Of the box round the surface: vertices without a triangle do not count. 0 where there is no triangle.
+double longestSide(const TriMesh& mesh);
+
+}  // namespace limber

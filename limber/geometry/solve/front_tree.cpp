@@ -1,0 +1,205 @@
+#include "limber/geometry/solve/front_tree.h"
+
+#include <algorithm>
+#include <iterator>
+#include <numeric>
+#include <utility>
+
+#include <Eigen/OrderingMethods>
+
+namespace limber {
+
+namespace {
+
+constexpr Index kWholeSubtree = 8;      // unknowns; a subtree of at most so many is one front
+constexpr double kZerosAllowed = 0.25;  // part of a front's entries that may be zeros added by gathering columns
+
+std::vector<Index> minimumDegreePlaces(const Eigen::SparseMatrix<double>& lower) {
+  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
+  Eigen::AMDOrdering<int>()(lower.selfadjointView<Eigen::Lower>(), order);
+  std::vector<Index> placeOf(lower.cols());
+  for (Eigen::Index place = 0; place < lower.cols(); ++place) {
+    placeOf[order.indices()[place]] = static_cast<Index>(place);
+  }
+  return placeOf;
+}
+
+// Entries by the earlier (`byLater` false) or the later of their two places.
+PermutedEntries permuteEntries(const Eigen::SparseMatrix<double>& lower, const std::vector<Index>& placeOf,
+                               bool byLater) {
+  PermutedEntries result;
+  const std::size_t count = placeOf.size();
+  const auto forEachEntry = [&](const auto& visit) {
+    for (std::size_t column = 0; column < count; ++column) {
+      for (int p = lower.outerIndexPtr()[column]; p < lower.outerIndexPtr()[column + 1]; ++p) {
+        const auto [early, late] = std::minmax(placeOf[column], placeOf[lower.innerIndexPtr()[p]]);
+        visit(byLater ? late : early, byLater ? early : late, p);
+      }
+    }
+  };
+  result.first.assign(count + 1, 0);
+  forEachEntry([&](Index column, Index, int) { ++result.first[column + 1]; });
+  std::partial_sum(result.first.begin(), result.first.end(), result.first.begin());
+  result.place.resize(static_cast<std::size_t>(result.first.back()));
+  result.position.resize(result.place.size());
+  std::vector<int> end(result.first.begin(), result.first.end() - 1);
+  forEachEntry([&](Index column, Index row, int p) {
+    result.place[end[column]] = row;
+    result.position[end[column]++] = p;
+  });
+  return result;
+}
+
+// The parent of each place, itself for a root (Liu's algorithm with path compression).
+std::vector<Index> eliminationTree(const PermutedEntries& byLater) {
+  const Index count = static_cast<Index>(byLater.first.size() - 1);
+  std::vector<Index> parent(count), ancestor(count);
+  for (Index i = 0; i < count; ++i) {
+    parent[i] = ancestor[i] = i;
+    for (int p = byLater.first[i]; p < byLater.first[i + 1]; ++p) {
+      for (Index k = byLater.place[p]; k != i;) {
+        const Index next = ancestor[k];
+        ancestor[k] = i;
+        if (next == k) {
+          parent[k] = i;
+          break;
+        }
+        k = next;
+      }
+    }
+  }
+  return parent;
+}
+
+// New places so that each subtree's are contiguous and a parent comes right after its largest child's subtree.
+struct Postorder {
+  std::vector<Index> placeOf;   // by old place
+  std::vector<Index> parent;    // by new place, itself for a root
+  std::vector<Index> treeSize;  // by new place: how many places the subtree under it has
+};
+
+Postorder postorder(const std::vector<Index>& parent) {
+  const Index count = static_cast<Index>(parent.size());
+  std::vector<Index> size(count, 1), largest(count, kNoIndex);
+  for (Index i = 0; i < count; ++i) {  // children come before parents
+    if (parent[i] == i) continue;
+    size[parent[i]] += size[i];
+    Index& best = largest[parent[i]];
+    if (best == kNoIndex || size[i] >= size[best]) best = i;
+  }
+  // Going down from the last place, each subtree takes the places before its root: the largest child first, then the
+  // others in the order met.
+  Postorder result{std::vector<Index>(count), std::vector<Index>(count), std::vector<Index>(count)};
+  std::vector<Index> freeEnd(count);  // by old place: where the next child's subtree ends
+  Index rootsEnd = count;
+  for (Index i = count; i-- > 0;) {
+    const bool root = parent[i] == i;
+    Index end;
+    if (root) {
+      end = rootsEnd;
+      rootsEnd -= size[i];
+    } else if (largest[parent[i]] == i) {
+      end = result.placeOf[parent[i]];
+    } else {
+      end = freeEnd[parent[i]];
+      freeEnd[parent[i]] -= size[i];
+    }
+    const Index place = end - 1;
+    result.placeOf[i] = place;
+    freeEnd[i] = place - (largest[i] == kNoIndex ? 0 : size[largest[i]]);
+    result.parent[place] = root ? place : result.placeOf[parent[i]];
+    result.treeSize[place] = size[i];
+  }
+  return result;
+}
+
+class FrontGatherer {
+ public:
+  FrontGatherer(const Postorder& tree, const PermutedEntries& entries) : tree_(tree), entries_(entries) {}
+
+  std::vector<FrontPlan> run() {
+    const Index count = static_cast<Index>(tree_.parent.size());
+    roots_.resize(count);
+    for (Index place = 0; place < count; ++place) {
+      const bool rootOfAll = tree_.parent[place] == place;
+      const bool small = tree_.treeSize[place] <= kWholeSubtree;
+      if (small && !rootOfAll && tree_.treeSize[tree_.parent[place]] <= kWholeSubtree) continue;
+      if (small) {
+        addFront(place + 1 - tree_.treeSize[place], place + 1);
+      } else {
+        addColumn(place);
+      }
+      const Index front = static_cast<Index>(fronts_.size() - 1);
+      if (!rootOfAll) roots_[tree_.parent[place]].push_back(front);
+    }
+    return std::move(fronts_);
+  }
+
+ private:
+  // The entries of the columns begin to end that reach further.
+  void addFront(Index begin, Index end) {
+    FrontPlan front;
+    front.begin = begin;
+    front.end = end;
+    for (int p = entries_.first[begin]; p < entries_.first[end]; ++p) {
+      if (entries_.place[p] >= end) front.rows.push_back(entries_.place[p]);
+    }
+    std::sort(front.rows.begin(), front.rows.end());
+    front.rows.erase(std::unique(front.rows.begin(), front.rows.end()), front.rows.end());
+    fronts_.push_back(std::move(front));
+    zeros_.push_back(0);
+  }
+
+  void addColumn(Index place) {
+    addFront(place, place + 1);
+    FrontPlan column = std::move(fronts_.back());
+    fronts_.pop_back();
+    zeros_.pop_back();
+    column.children = std::move(roots_[place]);
+    std::vector<Index> merged;
+    for (const Index child : column.children) {
+      const std::vector<Index>& below = fronts_[child].rows;  // its first row is this place
+      merged.clear();
+      std::set_union(column.rows.begin(), column.rows.end(), below.begin() + 1, below.end(),
+                     std::back_inserter(merged));
+      column.rows.swap(merged);
+    }
+    // The front before this column is that of its largest child.
+    const std::size_t last = fronts_.size() - 1;
+    const double zeros = zeros_[last] + static_cast<double>(fronts_[last].ownCount()) *
+                                            static_cast<double>(column.rows.size() + 1 - fronts_[last].rows.size());
+    const double own = fronts_[last].ownCount() + 1;
+    if (zeros <= kZerosAllowed * own * (0.5 * own + static_cast<double>(column.rows.size()))) {
+      FrontPlan& front = fronts_[last];
+      front.end = place + 1;
+      front.rows = std::move(column.rows);
+      column.children.pop_back();
+      front.children.insert(front.children.end(), column.children.begin(), column.children.end());
+      std::sort(front.children.begin(), front.children.end());
+      zeros_[last] = zeros;
+      return;
+    }
+    fronts_.push_back(std::move(column));
+    zeros_.push_back(0);
+  }
+
+  const Postorder& tree_;
+  const PermutedEntries& entries_;
+  std::vector<FrontPlan> fronts_;
+  std::vector<double> zeros_;              // by front: entries that are zero but kept
+  std::vector<std::vector<Index>> roots_;  // by place: fronts whose first row it is
+};
+
+}  // namespace
+
+FrontTree planFronts(const Eigen::SparseMatrix<double>& lower) {
+  FrontTree result;
+  result.placeOf = minimumDegreePlaces(lower);
+  const Postorder tree = postorder(eliminationTree(permuteEntries(lower, result.placeOf, true)));
+  for (Index& place : result.placeOf) place = tree.placeOf[place];
+  result.entries = permuteEntries(lower, result.placeOf, false);
+  result.fronts = FrontGatherer(tree, result.entries).run();
+  return result;
+}
+
+}  // namespace limber

@@ -1,0 +1,181 @@
+#include "limber/geometry/surface/surface_edges.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "limber/core/text/numbers.h"
+#include "limber/geometry/mesh/areas.h"
+
+namespace limber {
+
+namespace {
+
+// One side of a triangle: the edge's larger vertex, the triangle, and whether it runs from the smaller to the larger.
+struct Side {
+  Index larger = 0;
+  Index triangle = 0;
+  bool forward = false;
+};
+
+// Sides bucketed by their smaller vertex, each bucket ordered by larger vertex, then triangle.
+struct SideBuckets {
+  std::vector<std::size_t> begin;  // #V + 1
+  std::vector<Side> sides;
+};
+
+template <typename Visit>
+void forEachSide(const TriMesh& mesh, const Visit& visit) {
+  for (Index t = 0; t < mesh.triangleCount(); ++t) {
+    const Triangle& triangle = mesh.triangles[t];
+    for (int i = 0; i < 3; ++i) {
+      const Index from = triangle[i], to = triangle[(i + 1) % 3];
+      if (from != to) visit(std::min(from, to), Side{std::max(from, to), t, from < to});
+    }
+  }
+}
+
+void sortBucket(Side* begin, Side* end) {
+  const auto before = [](const Side& a, const Side& b) {
+    return a.larger != b.larger ? a.larger < b.larger : a.triangle < b.triangle;
+  };
+  if (end - begin > 24) {
+    std::sort(begin, end, before);
+    return;
+  }
+  for (Side* i = begin; i < end; ++i) {
+    const Side side = *i;
+    Side* j = i;
+    for (; j > begin && side.larger < j[-1].larger; --j) *j = j[-1];  // stable: triangles came in order
+    *j = side;
+  }
+}
+
+SideBuckets bucketSides(const TriMesh& mesh) {
+  SideBuckets buckets;
+  buckets.begin.assign(std::size_t{mesh.vertexCount()} + 2, 0);
+  forEachSide(mesh, [&](Index smaller, const Side&) { ++buckets.begin[smaller + 2]; });
+  std::partial_sum(buckets.begin.begin(), buckets.begin.end(), buckets.begin.begin());
+  buckets.sides.resize(buckets.begin.back());
+  forEachSide(mesh, [&](Index smaller, const Side& side) { buckets.sides[buckets.begin[smaller + 1]++] = side; });
+  buckets.begin.pop_back();
+  for (Index v = 0; v < mesh.vertexCount(); ++v) {
+    sortBucket(buckets.sides.data() + buckets.begin[v], buckets.sides.data() + buckets.begin[v + 1]);
+  }
+  return buckets;
+}
+
+// Union-find over triangles that also knows whether a triangle agrees with its root.
+class FacingSets {
+ public:
+  explicit FacingSets(std::size_t count) : parent_(count), turned_(count, 0) {
+    std::iota(parent_.begin(), parent_.end(), Index{0});
+  }
+
+  // The root of t's set; turned(t) is afterwards relative to it.
+  Index find(Index t) {
+    Index root = t;
+    std::uint8_t turned = 0;
+    while (parent_[root] != root) {
+      turned ^= turned_[root];
+      root = parent_[root];
+    }
+    while (parent_[t] != root && t != root) {
+      const Index next = parent_[t];
+      const std::uint8_t rest = turned ^ turned_[t];
+      parent_[t] = root;
+      turned_[t] = turned;
+      turned = rest;
+      t = next;
+    }
+    return root;
+  }
+  bool turned(Index t) const { return turned_[t] != 0; }
+
+  void unite(Index a, Index b, bool disagree) {
+    const Index rootA = find(a), rootB = find(b);
+    if (rootA == rootB) return;
+    const auto [low, high] = std::minmax(rootA, rootB);
+    parent_[high] = low;
+    turned_[high] = static_cast<std::uint8_t>(disagree ^ turned(a) ^ turned(b));
+  }
+
+ private:
+  std::vector<Index> parent_;
+  std::vector<std::uint8_t> turned_;
+};
+
+// What tells in from out for one part of the surface.
+struct Part {
+  double area = 0, keptArea = 0;  // all; what agrees with the root as stored
+  Vec3 center = Vec3::Zero();     // area weighted
+  double volume = 0;              // signed, of the cones from the centre, all triangles facing as the root
+};
+
+std::vector<std::int8_t> facingOf(const TriMesh& mesh, FacingSets& sets) {
+  const Index count = mesh.triangleCount();
+  std::vector<Index> rootOf(count);
+  std::vector<Index> partOf(count, kNoIndex);  // root -> part
+  std::vector<Part> parts;
+  const auto corners = [&](Index t) {
+    const Triangle& v = mesh.triangles[t];
+    return std::array<Vec3, 3>{mesh.position(v[0]), mesh.position(v[1]), mesh.position(v[2])};
+  };
+  for (Index t = 0; t < count; ++t) {
+    rootOf[t] = sets.find(t);
+    if (partOf[rootOf[t]] == kNoIndex) {
+      partOf[rootOf[t]] = static_cast<Index>(parts.size());
+      parts.emplace_back();
+    }
+    Part& part = parts[partOf[rootOf[t]]];
+    const auto [a, b, c] = corners(t);
+    const double area = triangleArea(a, b, c);
+    part.area += area;
+    if (!sets.turned(t)) part.keptArea += area;
+    part.center += (area / 3) * (a + b + c);
+  }
+  for (Part& part : parts) {
+    if (part.area > 0) part.center /= part.area;
+  }
+  for (Index t = 0; t < count; ++t) {
+    Part& part = parts[partOf[rootOf[t]]];
+    const auto [a, b, c] = corners(t);
+    const double cone = (a - part.center).dot((b - part.center).cross(c - part.center)) / 6;
+    part.volume += sets.turned(t) ? -cone : cone;
+  }
+  std::vector<std::int8_t> facing(count);
+  for (Index t = 0; t < count; ++t) {
+    const Part& part = parts[partOf[rootOf[t]]];
+    // A thousandth of the ball of that area: less says nothing about in and out.
+    const double noticeable = 1e-3 * std::sqrt(part.area * part.area * part.area / (36 * kPi));
+    const bool turnPart = std::abs(part.volume) > noticeable ? part.volume < 0 : 2 * part.keptArea < part.area;
+    facing[t] = turnPart != sets.turned(t) ? -1 : 1;
+  }
+  return facing;
+}
+
+}  // namespace
+
+SurfaceEdges surfaceEdges(const TriMesh& mesh) {
+  const SideBuckets buckets = bucketSides(mesh);
+  SurfaceEdges result;
+  result.edges.reserve(buckets.sides.size() / 2 + 1);
+  FacingSets sets(mesh.triangles.size());
+  for (Index v = 0; v < mesh.vertexCount(); ++v) {
+    for (std::size_t i = buckets.begin[v]; i < buckets.begin[v + 1];) {
+      std::size_t end = i + 1;
+      while (end < buckets.begin[v + 1] && buckets.sides[end].larger == buckets.sides[i].larger) ++end;
+      const Side& first = buckets.sides[i];
+      result.edges.push_back({v, first.larger});
+      if (end - i == 2) {
+        const Side& second = buckets.sides[i + 1];
+        sets.unite(first.triangle, second.triangle, first.forward == second.forward);
+      }
+      i = end;
+    }
+  }
+  result.facing = facingOf(mesh, sets);
+  return result;
+}
+
+}  // namespace limber

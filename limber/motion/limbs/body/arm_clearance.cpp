@@ -1,0 +1,95 @@
+#include "limber/motion/limbs/body/arm_clearance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "limber/character/anatomy/anatomy.h"
+#include "limber/core/rotation.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kGivesWay = 0.01;  // hip heights, over which arms begin to give way
+constexpr double kMostSwing = 0.7;  // radians, of one bone
+constexpr double kFlesh = 0.7;      // of an arm's thickness that has to stay outside
+
+bool isBody(PartKind kind) {
+  return kind == PartKind::kTrunk || kind == PartKind::kNeck || kind == PartKind::kHead || kind == PartKind::kLeg;
+}
+
+}  // namespace
+
+ArmClearance::ArmClearance(const RetargetSetup& setup, const RootPlacer& root) : setup_(setup), reach_(setup, root) {
+  if (!setup.options.skin || !setup.person || setup.sameBody) return;
+  const Anatomy anatomy = readAnatomy(*setup.target);
+  std::vector<double> thick(setup.target->jointCount(), 0.0);
+  for (Index j = 0; j < setup.target->jointCount(); ++j) {
+    const std::optional<SkinTube> tube = SkinTube::about(j, *setup.options.skin);
+    if (!tube) continue;
+    thick[j] = tube->thickness();
+    const std::optional<std::size_t> part = anatomy.partOf[j];
+    if (part && isBody(anatomy.parts[*part].kind)) body_.push_back(*tube);
+  }
+  BodyFrame rest;
+  setup.targetKinematics.globals(setup.targetRest, rest);
+  for (const Side side : kSides) {
+    const std::optional<Limb> limb = findLimb(setup, root, PartKind::kArm, side);
+    if (!limb || body_.empty()) continue;
+    Arm& arm = arms_.emplace_back();
+    arm.limb = *limb;
+    for (std::size_t i = 0; i < kAlong.size(); ++i) {
+      arm.thick[i] = kFlesh * thick[kAlong[i] > 1 ? limb->end : limb->lower];
+      arm.atRest[i] = std::max(depthAt(placeOf(*limb, kAlong[i], rest), rest).depth + arm.thick[i], 0.0);
+    }
+  }
+}
+
+Vec3 ArmClearance::placeOf(const Limb& limb, double along, const BodyFrame& frame) {
+  const Vec3& elbow = frame.positions[limb.lower];
+  return elbow + along * (frame.positions[limb.end] - elbow);
+}
+
+SkinTube::Depth ArmClearance::depthAt(const Vec3& point, const BodyFrame& frame) const {
+  SkinTube::Depth deepest{-std::numeric_limits<double>::infinity(), Vec3::Zero()};
+  for (const SkinTube& tube : body_) {
+    const std::optional<SkinTube::Depth> found = tube.depthOf(point, frame);
+    if (found && found->depth > deepest.depth) deepest = *found;
+  }
+  return deepest;
+}
+
+Vec3 ArmClearance::wayOutAt(const Arm& arm, std::size_t probe, const BodyFrame& frame) const {
+  const SkinTube::Depth found = depthAt(placeOf(arm.limb, kAlong[probe], frame), frame);
+  const double depth = found.depth + arm.thick[probe] - arm.atRest[probe];
+  if (!(depth > 0)) return Vec3::Zero();
+  return depth * depth / (depth + kGivesWay * setup_.targetHipHeight) * found.out;
+}
+
+Vec3 ArmClearance::wayOut(std::size_t arm, Bone bone, const BodyFrame& frame) const {
+  if (bone == Bone::kUpper) return wayOutAt(arms_[arm], 0, frame);
+  Vec3 most = Vec3::Zero();
+  for (std::size_t i = 1; i < kAlong.size(); ++i) {
+    const Vec3 needed = wayOutAt(arms_[arm], i, frame) / kAlong[i];
+    if (needed.squaredNorm() > most.squaredNorm()) most = needed;
+  }
+  return most;
+}
+
+void ArmClearance::swing(std::size_t arm, Bone bone, const Vec3& way, BodyFrame& frame, Pose& target) const {
+  const Limb& limb = arms_[arm].limb;
+  const auto [upper, lower] =
+      bone == Bone::kUpper ? std::pair(limb.upper, limb.lower) : std::pair(limb.lower, limb.end);
+  const Vec3 from = frame.positions[lower] - frame.positions[upper];
+  if (way.norm() < 1e-9 * from.norm()) return;
+  Eigen::AngleAxisd turn(shortestRotation(from, from + way));
+  turn.angle() = kMostSwing * std::tanh(turn.angle() / kMostSwing);
+  Limb turned;
+  turned.end = upper;
+  reach_.turnEnd(turned, Quat(turn) * frame.rotations[upper], frame, target);
+}
+
+}  // namespace limber

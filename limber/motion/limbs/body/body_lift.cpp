@@ -1,0 +1,48 @@
+#include "limber/motion/limbs/body/body_lift.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "limber/motion/limbs/smooth.h"
+#include "limber/skeleton/chain.h"
+
+namespace limber {
+
+namespace {
+
+// In hip heights of the target.
+constexpr double kLies = 0.2;   // a joint lower than that is held as high as the source's, scaled
+constexpr double kSoft = 0.04;  // over which both come and go without a kink
+constexpr double kMost = 2;     // that still tells which joint lacks most
+
+}  // namespace
+
+BodyLift::BodyLift(const RetargetSetup& setup) : setup_(setup) {
+  const Skeleton& target = *setup.target;
+  const auto carriesLeg = [&](Index joint) {
+    return std::any_of(setup.animalLegs.begin(), setup.animalLegs.end(),
+                       [&](const AnimalLeg& leg) { return isAncestorOrSelf(target, joint, leg.target.upper); });
+  };
+  for (const JointMatch& match : setup.map.matches) {
+    if (!target.joints[match.target.front()].parent) continue;  // may lie on the ground by itself
+    if (carriesLeg(match.target.front())) body_.push_back({match.source.front(), match.target.front()});
+  }
+}
+
+double BodyLift::operator()(const BodyFrame& source, const BodyFrame& target) const {
+  const double height = setup_.targetHipHeight;
+  double sum = 0, weights = 0;
+  for (const Pair& pair : body_) {
+    const double over = setup_.scale * (source.positions[pair.source].y() - setup_.sourceGround) / height;
+    const double wanted = kLies - softPositive(kLies - over, kSoft);
+    const double is = (target.positions[pair.target].y() - setup_.targetGround) / height;
+    const double lacks = softPositive(wanted - is, kSoft);
+    const double weight = std::exp(std::min(lacks, kMost) / kSoft);
+    sum += weight * lacks;
+    weights += weight;
+  }
+  // The most, but without a kink where another joint takes over.
+  return weights > 0 ? height * sum / weights : 0;
+}
+
+}  // namespace limber

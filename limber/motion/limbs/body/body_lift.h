@@ -1,0 +1,30 @@
+// Keeps the trunk of an animal that sits or lies out of the ground.
+#pragma once
+
+#include <vector>
+
+#include "limber/character/matching/retarget_setup.h"
+
+namespace limber {
+
+// How far an animal has to rise for its body to come no further down than the source's, scaled: bodies are not as wide
+// or deep as the source's, and hips that go the source's way take them below the ground. Looks at the trunk and where
+// legs begin: heads, tails and feet may come down on their own.
+class BodyLift {
+ public:
+  // Nothing to lift for people. `setup` must outlive this.
+  explicit BodyLift(const RetargetSetup& setup);
+
+  // Metres, at least 0, without a jump from frame to frame.
+  double operator()(const BodyFrame& source, const BodyFrame& target) const;
+
+ private:
+  struct Pair {
+    Index source = 0, target = 0;
+  };
+
+  const RetargetSetup& setup_;
+  std::vector<Pair> body_;
+};
+
+}  // namespace limber

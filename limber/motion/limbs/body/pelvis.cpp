@@ -1,0 +1,223 @@
+#include "limber/motion/limbs/body/pelvis.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "limber/core/rotation.h"
+#include "limber/motion/limbs/smooth.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kWidthPower = 1.5;  // power of the hips' widths by which their turns are less
+// In hip heights of the target.
+constexpr double kMostShift = 0.3;
+constexpr double kMostAtEnd = 0.15;  // by which feet that cannot reach pull down hips or shoulders: then they lift
+constexpr double kSoftStretch = 0.015, kSoftChange = 0.004;  // of sinking, by how far a foot is moved
+constexpr double kSoftFar = 0.04;   // likewise: of legs at both ends of a body, and foot-driven ones, some are
+                                    // far off and stretch more
+constexpr double kNearLevel = 0.3;  // squared sine of the slope of a person's leg from which on sinking helps it less
+constexpr double kSoftBend = 0.1;   // by which feet of foot-driven legs count the more, the lower they want the body
+constexpr double kStandsBelow = 0.45;  // Leg::lift from which on their bend no longer counts
+constexpr double kSoftFold = 0.02;     // before a leg folds wholly
+constexpr double kStay = 0.5;          // legs that these go against, which want it to stay
+constexpr double kApart = 0.75;        // share of what the bends of legs at both ends want these to move apart
+constexpr double kStretch = 0.998;     // of a leg's length: fully stretched knees pop
+constexpr double kKneesFold = 0.75;    // of Limb::folded: about the nearest that people's feet come to their hips
+// Of the distance to which a leg folds: the depth below its hip at which the pose has a foot that keeps the body above
+// it; the nearer to the level of the hip, the less.
+constexpr double kClearlyBelow = 0.5;
+// Of turning with planted legs: leg lengths, the more the less it does; and radians.
+constexpr double kStiffOnTwo = 0.15, kStiffOnOne = 0.3, kMostTurn = 0.8;
+
+Vec3 level(const Vec3& v) {
+  return {v.x(), 0, v.z()};
+}
+
+// x where it is small, at most `most` either way.
+double saturated(double x, double most) {
+  const double share = x / most;
+  return x / std::sqrt(std::sqrt(1 + share * share * share * share));
+}
+
+// Share to which the body makes up for what the leg lacks to reach its goal.
+double followed(const Leg& leg) {
+  return leg.footDriven ? leg.upright * smoothStep(1 - leg.lift / kLifted) : 1;
+}
+
+double hipWidth(const NeutralPose& neutral, Index left, Index right) {
+  return (neutral.restPositions[left] - neutral.restPositions[right]).norm();
+}
+
+}  // namespace
+
+Pelvis::Pelvis(const RetargetSetup& setup, const RootPlacer& root) : setup_(setup), root_(root), tilt_(setup, root) {
+  if (!setup.person) return;
+  const JointMatch &left = *setup.map.find(body_part::leg(Side::kLeft, Segment::kUpper)),
+                   &right = *setup.map.find(body_part::leg(Side::kRight, Segment::kUpper));
+  leftHip_ = left.target.front();
+  rightHip_ = right.target.front();
+  const double wide = hipWidth(setup.targetNeutral, leftHip_, rightHip_) / setup.targetHipHeight;
+  const double source =
+      hipWidth(setup.sourceNeutral, left.source.front(), right.source.front()) / setup.sourceHipHeight;
+  if (source > 0 && wide > source) hipTurns_ = std::pow(source / wide, kWidthPower);
+  if (const JointMatch* trunk = setup.map.find(body_part::kTrunk)) trunk_ = trunk->target.back();
+}
+
+void Pelvis::levelHips(Pose& target, BodyFrame& frame) const {
+  if (hipTurns_ == 1) return;
+  const NeutralPose& neutral = setup_.targetNeutral;
+  const Vec3 line = (frame.positions[leftHip_] - frame.positions[rightHip_]).normalized();
+  Vec3 levelled = level(line);
+  if (trunk_) {
+    const Vec3 stands = (neutral.positions[leftHip_] - neutral.positions[rightHip_]).normalized();
+    levelled = 0.5 * (levelled + level(frame.rotations[*trunk_] * neutral.rotations[*trunk_].conjugate() * stands));
+  }
+  levelled += (1 - levelled.norm()) * line;
+  const Vec3 wanted = (hipTurns_ * line + (1 - hipTurns_) * levelled).normalized();
+  root_.turnPelvis(shortestRotation(line, wanted), target, frame);
+}
+
+Pelvis::Move Pelvis::moveFor(std::span<const Leg> legs, const BodyFrame& frame, std::optional<double> rise) const {
+  if (tilt_.tilts()) {
+    const auto fore = std::find_if(legs.begin(), legs.end(), [](const Leg& leg) { return leg.fore; });
+    const auto hind = static_cast<std::size_t>(fore - legs.begin());
+    return moveOfEnds(legs.first(hind), legs.subspan(hind), frame);
+  }
+  const Quat turn = turnFor(legs, frame);
+  return {turn, shiftFor(legs, frame, turn, rise ? *rise : riseFor(legs, frame, turn))};
+}
+
+Pelvis::Move Pelvis::moveOfEnds(std::span<const Leg> hind, std::span<const Leg> fore, const BodyFrame& frame) const {
+  const Quat none = Quat::Identity();
+  const double hindRise = riseFor(hind, frame, none), foreRise = riseFor(fore, frame, none);
+  const double apart = 0.5 * (1 - kApart) * (foreRise - hindRise);
+  const double up = shiftFor(hind, frame, none, hindRise + apart);
+  return {TrunkTilt::turnFor(shiftFor(fore, frame, none, foreRise - apart) - up, tilt_.trunkOf(frame)), up};
+}
+
+Vec3 Pelvis::hipWay(const Move& move, const Leg& leg, const BodyFrame& frame) const {
+  const Vec3 way = Vec3(0, move.up, 0);
+  if (move.turn.w() == 1) return way;
+  const Vec3 fromMiddle = frame.positions[leg.upper] - root_.middleOfHips(frame);
+  return way + move.turn * fromMiddle - fromMiddle;
+}
+
+void Pelvis::apply(const Move& move, Pose& target, BodyFrame& frame) const {
+  root_.turnPelvis(move.turn, target, frame);
+  if (std::abs(move.up) > 1e-9 * setup_.targetHipHeight) {
+    root_.movePelvis(Vec3(0, move.up, 0), target, frame);
+  } else if (!setup_.person) {
+    root_.settle(target, frame);
+  }
+}
+
+// Least squares over what the planted legs lack, against the turn itself. On one leg only the turn about the vertical
+// helps: the shift brings that leg to the ground.
+Quat Pelvis::turnFor(std::span<const Leg> legs, const BodyFrame& frame) const {
+  if (!setup_.person || legs.size() != 2 || !root_.turnsPelvis() || anyFootDriven(legs)) return Quat::Identity();
+  const Leg &left = legs[0], &right = legs[1];
+  const Vec3 toHip = 0.5 * (frame.positions[left.upper] - frame.positions[right.upper]);
+  const Vec3 lackLeft = left.goal - frame.positions[left.end], lackRight = right.goal - frame.positions[right.end];
+  const double both = left.contact.strength * right.contact.strength, length = 0.5 * (left.length + right.length);
+  const double onTwo = kStiffOnTwo * length, onOne = kStiffOnOne * length;
+  Vec3 turn = 0.5 * both / (toHip.squaredNorm() + onTwo * onTwo) * toHip.cross(lackLeft - lackRight);
+  const Vec3 alone = (left.contact.strength - both) * lackLeft - (right.contact.strength - both) * lackRight;
+  turn.y() += toHip.cross(alone).y() / (toHip.squaredNorm() + onOne * onOne);
+  return fromRotationVector(turn / std::sqrt(1 + turn.squaredNorm() / (kMostTurn * kMostTurn)));
+}
+
+// By the pelvis rising, every leg that is planted would be as long as its joint angles make it: the mean of those ways.
+// The more level a leg is, the less rising does to its length, and the less it counts.
+double Pelvis::riseFor(std::span<const Leg> legs, const BodyFrame& frame, const Quat& turn) const {
+  double sum = 0, weights = 0;
+  for (const Leg& leg : legs) {
+    if (leg.footDriven) continue;
+    const Vec3 hip = frame.positions[leg.upper], way = leg.goal - hip - hipWay({turn, 0}, leg, frame);
+    const double length = (frame.positions[leg.end] - hip).norm(), across = std::hypot(way.x(), way.z());
+    if (way.y() >= 0 || across >= length) continue;
+    const double weight = leg.contact.strength * (1 - across * across / (length * length));
+    sum += weight * (way.y() + std::sqrt(length * length - across * across));
+    weights += weight;
+  }
+  const double most = kMostShift * setup_.targetHipHeight;
+  return std::clamp(sum / std::max(weights, 1.0) + footDrivenOffset(legs, frame), -most, most);
+}
+
+// Their joint angles have the foot elsewhere: legs that stand bend as the source's do. A mean of the ways, without a
+// kink where another leg takes over.
+double Pelvis::footDrivenOffset(std::span<const Leg> legs, const BodyFrame& frame) const {
+  const double soft = kSoftBend * setup_.targetHipHeight;
+  double sum = kStay, weights = kStay;
+  for (const Leg& leg : legs) {
+    if (!leg.footDriven) continue;
+    const Vec3 way = leg.goal - frame.positions[leg.upper];
+    const double reach = leg.bentReach, across = std::hypot(way.x(), way.z());
+    if (across >= reach) continue;
+    const double weight = leg.upright * smoothStep(1 - leg.lift / kStandsBelow) *
+                          (1 - across * across / (reach * reach)) * steepness(leg, across, reach);
+    const double up = way.y() + std::sqrt(reach * reach - across * across);
+    sum += weight * std::exp(-saturated(up, kMostShift * setup_.targetHipHeight) / soft);
+    weights += weight;
+  }
+  return -soft * std::log(sum / weights);
+}
+
+// A foot-driven leg may be led so far ahead that a person's leg is nearly level: then the body lets go of it.
+double Pelvis::steepness(const Leg& leg, double across, double reach) const {
+  if (!setup_.person || !leg.footDriven) return 1;
+  return smoothStep((1 - across * across / (reach * reach)) / kNearLevel);
+}
+
+double Pelvis::changeOf(const Leg& leg, const BodyFrame& frame, const Quat& turn) const {
+  if (leg.footDriven) return 1;
+  const double change = (leg.goal - frame.positions[leg.end] - hipWay({turn, 0}, leg, frame)).norm();
+  return change / (change + kSoftChange * setup_.targetHipHeight);
+}
+
+double Pelvis::shiftFor(std::span<const Leg> legs, const BodyFrame& frame, const Quat& turn, double rise) const {
+  const double height = setup_.targetHipHeight;
+  const bool byAngles = setup_.person && !anyFootDriven(legs);
+  const double soft = (byAngles ? kSoftStretch : kSoftFar) * height;
+  double sum = 0;
+  for (const Leg& leg : legs) {
+    const Vec3 hipGoes = hipWay({turn, 0}, leg, frame);
+    const Vec3 way = leg.goal - frame.positions[leg.upper] - hipGoes - Vec3(0, rise, 0);
+    if (way.y() >= 0) continue;
+    const double length = kStretch * leg.length, across = std::hypot(way.x(), way.z());
+    const double down = std::sqrt(std::max(length * length - across * across, 0.0));
+    const double needed =
+        followed(leg) * steepness(leg, across, length) * softPositive(-way.y() - down, soft * leg.changed);
+    sum += needed * needed * needed * needed;
+  }
+  // The most that a leg asks for, but without a kink where another takes over.
+  const double most = std::sqrt(std::sqrt(sum));
+  const double down = byAngles || (!setup_.person && !tilt_.tilts())
+                          ? std::min(most, kMostShift * height)
+                          : saturated(most, (tilt_.tilts() ? kMostAtEnd : kMostShift) * height);
+  const double shift = rise - down;
+  return shift + raiseFor(legs, frame, shift);
+}
+
+// So that no planted foot of a foot-driven leg is nearer to its hip than the leg folds, where it would go astray,
+// nor a person's further than knees do, which else turn round. That is for legs which the pose has below their hips,
+// though goals may lie above these (of a body that comes out of the ground): the hip has to rise over the goal. A foot
+// that the pose has above its hip (a handstand, a high kick, legs that point up) is to stay there.
+double Pelvis::raiseFor(std::span<const Leg> legs, const BodyFrame& frame, double shift) const {
+  double sum = 0;
+  for (const Leg& leg : legs) {
+    const Vec3 way = leg.goal - frame.positions[leg.upper] - Vec3(0, shift, 0);
+    const Vec3 own = (leg.footDriven ? leg.place : frame.positions[leg.end]) - frame.positions[leg.upper];
+    const double least = leg.footDriven ? leg.folded : std::min(kKneesFold * leg.folded, own.norm());
+    const double across = std::hypot(way.x(), way.z());
+    if (leg.hock || across >= least || !(leg.footDriven || setup_.person)) continue;  // hocks fold as well
+    const double lacks = std::sqrt(least * least - across * across) + way.y();
+    const double below = smoothStep(-own.y() / (kClearlyBelow * least));
+    const double needed = below * followed(leg) * softPositive(lacks, kSoftFold * setup_.targetHipHeight);
+    sum += needed * needed * needed * needed;
+  }
+  return std::sqrt(std::sqrt(sum));
+}
+
+}  // namespace limber

@@ -1,0 +1,246 @@
+#include "limber/motion/limbs/body/root_motion.h"
+
+#include <algorithm>
+
+#include "limber/skeleton/chain.h"
+
+namespace limber {
+
+Vec3 middleOf(std::span<const Index> joints, const std::vector<Vec3>& positions) {
+  Vec3 sum = Vec3::Zero();
+  for (const Index joint : joints) sum += positions[joint];
+  return sum / static_cast<double>(joints.size());
+}
+
+RootPlacer::RootPlacer(const RetargetSetup& setup) : setup_(setup) {
+  const Skeleton& target = *setup.target;
+  if (!setup.person) {
+    findCarrierOfLegs();
+    if (setup.quadruped) {
+      if (!hips_) hips_ = setup.map.find(body_part::kPelvis)->target.front();
+      moved_.push_back(*hips_);
+      hindquarters_ = hindquartersOf(MapSide::kTarget);
+      sourceHindquarters_ = hindquartersOf(MapSide::kSource);
+      findTrunk();
+    } else {
+      for (const JointMatch& match : setup.map.matches) moved_.push_back(match.target.front());
+      findCarried();
+    }
+    for (const AnimalLeg& leg : setup.animalLegs) {
+      if (!leg.target.carrier) continue;
+      addLoose({leg.target.end, *leg.target.carrier, true});
+      if (std::find(moved_.begin(), moved_.end(), leg.target.end) == moved_.end()) moved_.push_back(leg.target.end);
+    }
+    return;
+  }
+  hips_ = setup.map.find(body_part::kPelvis)->target.front();
+  moved_.push_back(*hips_);
+  findPelvis();
+  if (setup.sameBody) return;  // what is loose moves as its partner does
+  for (const LooseJoint& loose : looseJoints(target, setup.map, MapSide::kTarget, setup.targetNeutral.restPositions)) {
+    addLoose(loose);
+    moved_.push_back(loose.joint);
+  }
+}
+
+void RootPlacer::addLoose(const LooseJoint& joint) {
+  const NeutralPose& neutral = setup_.targetNeutral;
+  const std::vector<Affine> rest = poseGlobals(*setup_.target, setup_.targetRest);
+  const Quat from = (neutral.toBody * decompose(rest[joint.carrier]).rotation).conjugate();
+  Loose& loose = loose_.emplace_back();
+  loose.joint = joint.joint;
+  loose.carrier = joint.carrier;
+  loose.offset = from * (neutral.restPositions[joint.joint] - neutral.restPositions[joint.carrier]);
+  if (!joint.matched) loose.turn = from * neutral.toBody * decompose(rest[joint.joint]).rotation;
+}
+
+void RootPlacer::findCarrierOfLegs() {
+  const Skeleton& target = *setup_.target;
+  for (const AnimalLeg& leg : setup_.animalLegs) {
+    if (!hips_) hips_ = leg.target.upper;
+    while (hips_ && !isAncestorOrSelf(target, *hips_, leg.target.upper)) hips_ = target.joints[*hips_].parent;
+    if (!hips_) return;
+  }
+}
+
+std::vector<Index> RootPlacer::hindquartersOf(MapSide side) const {
+  const bool isSource = side == MapSide::kSource;
+  const Skeleton& skeleton = isSource ? *setup_.source : *setup_.target;
+  const std::vector<Index>* trunk = jointsOfPart(setup_.map, side, body_part::kTrunk);
+  std::vector<Index> hips;
+  bool carriesForelegs = false;
+  for (const AnimalLeg& leg : setup_.animalLegs) {
+    const Index upper = (isSource ? leg.source : leg.target).upper;
+    if (!leg.fore) {
+      hips.push_back(upper);
+    } else if (trunk) {
+      carriesForelegs = carriesForelegs || !isAncestorOrSelf(skeleton, trunk->front(), upper);
+    }
+  }
+  if (carriesForelegs && !hips.empty()) return hips;
+  return {jointsOfPart(setup_.map, side, body_part::kPelvis)->front()};
+}
+
+void RootPlacer::findCarried() {
+  const auto isUnder = [](const Skeleton& skeleton, const std::vector<Index>& matched, Index joint) {
+    return std::any_of(matched.begin(), matched.end(),
+                       [&](Index above) { return above != joint && isAncestorOrSelf(skeleton, above, joint); });
+  };
+  const std::vector<Index> from = matchedJoints(setup_.map, MapSide::kSource),
+                           to = matchedJoints(setup_.map, MapSide::kTarget);
+  for (const JointMatch& match : setup_.map.matches) {
+    const Index s = match.source.front();
+    const bool isTop = !isUnder(*setup_.source, from, s) && !isUnder(*setup_.target, to, match.target.front());
+    carried_.push_back(isTop && setup_.source->joints[s].parent);
+  }
+}
+
+void RootPlacer::findPelvis() {
+  const Skeleton& target = *setup_.target;
+  const Index pelvis = setup_.map.find(body_part::kPelvis)->target.back();
+  const auto turns = [&](Index j) {
+    return j == pelvis || std::find(turnsAlong_.begin(), turnsAlong_.end(), j) != turnsAlong_.end();
+  };
+  for (const Side side : kSides) {
+    const Index leg = setup_.map.find(body_part::leg(side, Segment::kUpper))->target.front();
+    if (leg == pelvis || !isAncestorOrSelf(target, pelvis, leg)) return;
+    for (Index j = *target.joints[leg].parent; !turns(j); j = *target.joints[j].parent) turnsAlong_.push_back(j);
+    hipJoints_.push_back(leg);
+  }
+  pelvis_ = pelvis;
+  for (Index j = 0; j < target.jointCount(); ++j) {
+    if (target.joints[j].parent && turns(*target.joints[j].parent) && !turns(j)) pelvisChildren_.push_back(j);
+  }
+}
+
+void RootPlacer::findTrunk() {
+  const Skeleton& target = *setup_.target;
+  const Index hindquarters = setup_.map.find(body_part::kPelvis)->target.front();
+  std::vector<Index> kept;
+  for (const AnimalLeg& leg : setup_.animalLegs) {
+    const Index upper = leg.target.upper;
+    if (upper == hindquarters || !isAncestorOrSelf(target, hindquarters, upper)) return;
+    kept.push_back(upper);
+    if (!leg.fore) hipJoints_.push_back(upper);
+  }
+  if (hipJoints_.empty()) return;
+  pelvis_ = hindquarters;
+  for (const BodyPart& part : {body_part::kNeck, body_part::kHead, body_part::kTail}) {
+    if (const JointMatch* match = setup_.map.find(part)) kept.push_back(match->target.front());
+  }
+  std::vector<bool> turns(target.jointCount(), false);
+  turns[hindquarters] = true;
+  for (Index j = 0; j < target.jointCount(); ++j) {
+    if (!target.joints[j].parent || !turns[*target.joints[j].parent]) continue;
+    turns[j] = std::find(kept.begin(), kept.end(), j) == kept.end();
+    (turns[j] ? turnsAlong_ : pelvisChildren_).push_back(j);
+  }
+}
+
+void RootPlacer::place(const Pose& source, const BodyFrame& sourceFrame, Pose& target, BodyFrame& frame) const {
+  if (!setup_.person) {
+    if (!hindquarters_.empty()) {
+      placeHindquarters(sourceFrame, target, frame);
+      return;
+    }
+    placeEach(source, sourceFrame, target, frame);
+    setup_.targetKinematics.place(target, frame);
+    return;
+  }
+  if (setup_.sameBody) {
+    placeEach(source, sourceFrame, target, frame);
+    setup_.targetKinematics.place(target, frame);
+  }
+  const Vec3 there = setup_.placeOf(pelvisOf(setup_.map, MapSide::kSource, sourceFrame.positions));
+  movePelvis(there - pelvisOf(setup_.map, MapSide::kTarget, frame.positions), target, frame);
+}
+
+void RootPlacer::placeHindquarters(const BodyFrame& sourceFrame, Pose& target, BodyFrame& frame) const {
+  const std::vector<Vec3>& sourceRest = setup_.sourceNeutral.restPositions;
+  const Vec3 way = middleOf(sourceHindquarters_, sourceFrame.positions) - middleOf(sourceHindquarters_, sourceRest);
+  const Vec3 there = middleOf(hindquarters_, setup_.targetNeutral.restPositions) + setup_.scale * way;
+  movePelvis(there - middleOf(hindquarters_, frame.positions), target, frame);
+}
+
+void RootPlacer::placeEach(const Pose& source, const BodyFrame& sourceFrame, Pose& target,
+                           const BodyFrame& frame) const {
+  for (std::size_t m = 0; m < setup_.map.matches.size(); ++m) {
+    const JointMatch& match = setup_.map.matches[m];
+    for (std::size_t i = 0; i < (setup_.sameBody ? match.target.size() : 1); ++i) {
+      const Index s = match.source[i], t = match.target[i];
+      const Vec3 own = source.locals[s].translation - setup_.source->joints[s].rest.translation;
+      Vec3 way = setup_.sourceKinematics.parentRotation(s, sourceFrame) * (setup_.sourceKinematics.unit(s) * own);
+      if (i == 0 && !carried_.empty() && carried_[m]) {
+        way = sourceFrame.positions[s] - setup_.sourceNeutral.restPositions[s];
+      }
+      const double unit = setup_.scale / setup_.targetKinematics.unit(t);
+      const Quat toParent = setup_.targetKinematics.parentRotation(t, frame).conjugate();
+      target.locals[t].translation = setup_.target->joints[t].rest.translation + unit * (toParent * way);
+    }
+  }
+}
+
+void RootPlacer::movePelvis(const Vec3& shift, Pose& target, BodyFrame& frame) const {
+  if (!hips_) return;
+  const BodyKinematics& kinematics = setup_.targetKinematics;
+  const Quat above = kinematics.parentRotation(*hips_, frame);
+  target.locals[*hips_].translation += (above.conjugate() * shift) / kinematics.unit(*hips_);
+  settle(target, frame);
+}
+
+void RootPlacer::turnPelvis(const Quat& turn, Pose& target, BodyFrame& frame) const {
+  if (!pelvis_) return;
+  const BodyKinematics& kinematics = setup_.targetKinematics;
+  const Vec3 middle = middleOfHips(frame);
+  const Quat turned = turn * frame.rotations[*pelvis_];
+  target.locals[*pelvis_].rotation = (kinematics.parentRotation(*pelvis_, frame).conjugate() * turned).normalized();
+  frame.rotations[*pelvis_] = turned;
+  for (const Index joint : turnsAlong_) frame.rotations[joint] = turn * frame.rotations[joint];
+  for (const Index child : pelvisChildren_) {
+    target.locals[child].rotation =
+        (kinematics.parentRotation(child, frame).conjugate() * frame.rotations[child]).normalized();
+  }
+  kinematics.place(target, frame);
+  movePelvis(middle - middleOfHips(frame), target, frame);
+}
+
+Vec3 RootPlacer::middleOfHips(const BodyFrame& frame) const {
+  return middleOf(hipJoints_, frame.positions);
+}
+
+void RootPlacer::settle(Pose& target, BodyFrame& frame) const {
+  setup_.targetKinematics.place(target, frame);
+  settleLoose(target, frame);
+}
+
+bool RootPlacer::isFootDriven(const AnimalLeg& leg) const {
+  return setup_.animalLegs.size() == 2 || setup_.quadruped || (leg.source.carrier && leg.target.carrier);
+}
+
+Index RootPlacer::carrierOf(Index joint) const {
+  for (const Loose& loose : loose_) {
+    if (loose.joint == joint) return loose.carrier;
+  }
+  return joint;
+}
+
+void RootPlacer::settleLoose(Pose& target, BodyFrame& frame) const {
+  const BodyKinematics& kinematics = setup_.targetKinematics;
+  for (const Loose& loose : loose_) {
+    const Quat& carrier = frame.rotations[loose.carrier];
+    const Quat toParent = kinematics.parentRotation(loose.joint, frame).conjugate();
+    const Vec3 there = frame.positions[loose.carrier] + carrier * loose.offset;
+    const Vec3 way = toParent * Vec3(there - kinematics.parentPosition(loose.joint, frame));
+    target.locals[loose.joint].translation = way / kinematics.unit(loose.joint);
+    if (loose.turn) target.locals[loose.joint].rotation = (toParent * carrier * *loose.turn).normalized();
+    // At once: what is below may carry the next one, or be loose itself. A matched joint keeps the rotation that it has
+    // in the frame.
+    if (loose.turn) {
+      kinematics.globalsBelow(loose.joint, target, frame);
+    } else {
+      kinematics.placeBelow(loose.joint, target, frame);
+    }
+  }
+}
+
+}  // namespace limber

@@ -1,0 +1,65 @@
+#include "limber/motion/limbs/body/tail_lift.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "limber/motion/limbs/limb_reach.h"
+#include "limber/motion/limbs/smooth.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kClearance = 0.03;  // hip heights between the tail's joints and the ground
+constexpr double kSoft = 0.05;       // radians
+constexpr double kBack = 0.1;        // of its length, that counts for where it points at rest
+constexpr double kFine = 0.1;        // how finely the most of what joints ask for is told, radians
+
+Vec3 level(const Vec3& v) {
+  return {v.x(), 0, v.z()};
+}
+
+}  // namespace
+
+TailLift::TailLift(const RetargetSetup& setup, const RootPlacer& root) : setup_(setup), root_(root) {
+  if (!setup.person) tail_ = setup.targetTail;
+  if (tail_.size() < 2 || !setup.target->joints[tail_.front()].parent) tail_.clear();
+}
+
+double TailLift::needed(const BodyFrame& frame) const {
+  const Vec3 base = frame.positions[tail_.front()];
+  const double floor = setup_.targetGround + kClearance * setup_.targetHipHeight;
+  double sum = 0, weights = 0;
+  for (auto joint = tail_.begin() + 1; joint != tail_.end(); ++joint) {
+    const Vec3 way = frame.positions[*joint] - base;
+    const double length = way.norm();
+    if (!(length > 0)) continue;
+    const double least = std::asin(std::clamp((floor - base.y()) / length, -1.0, 1.0));
+    const double up = softPositive(least - std::asin(std::clamp(way.y() / length, -1.0, 1.0)), kSoft);
+    const double weight = std::exp(up / kFine);
+    sum += weight * up;
+    weights += weight;
+  }
+  return weights > 0 ? sum / weights : 0;
+}
+
+// Where it points, level; what hangs straight down goes back.
+Vec3 TailLift::heading(const BodyFrame& frame) const {
+  const NeutralPose& neutral = setup_.targetNeutral;
+  const Index hips = *setup_.target->joints[tail_.front()].parent;
+  const Vec3 atRest = neutral.positions[tail_.back()] - neutral.positions[tail_.front()];
+  const Vec3 back = frame.rotations[hips] * neutral.rotations[hips].conjugate() * atRest;
+  return level(frame.positions[tail_.back()] - frame.positions[tail_.front()] + kBack * back);
+}
+
+void TailLift::apply(Pose& target, BodyFrame& frame) const {
+  if (tail_.empty()) return;
+  const Vec3 ahead = heading(frame);
+  if (!(ahead.norm() > 1e-6 * setup_.targetHipHeight)) return;
+  const Quat up(Eigen::AngleAxisd(needed(frame), ahead.normalized().cross(Vec3::UnitY())));
+  Limb base;
+  base.end = tail_.front();
+  LimbReach(setup_, root_).turnEnd(base, up * frame.rotations[base.end], frame, target);
+}
+
+}  // namespace limber

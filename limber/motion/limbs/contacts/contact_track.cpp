@@ -1,0 +1,153 @@
+#include "limber/motion/limbs/contacts/contact_track.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "limber/motion/limbs/spring.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kPlantRate = 9;  // 1/seconds, of strength and flatness
+// A foot rests that is as low and as slow, hip heights (a second), seen over the step to a frame.
+constexpr double kLow = 0.05, kSlow = 0.15;
+// Speeds of the source's pelvis or feet, hip heights a second, that are no motion but a cut. Many recordings have a
+// T-pose as their first frame.
+constexpr double kJump = 15, kFirstJump = 4;
+
+// A foot that stands at this speed (hip heights a second, seen over kSeenSeconds to each side) is held by a billionth.
+constexpr double kFreeSpeed = 0.6, kFreeFirmness = 1e-9;
+constexpr double kSeenSeconds = 1.0 / 30;  // a frame of the slowest recordings
+
+constexpr double kSameMoment = 1e-6;  // seconds, between a frame and the edge of what the user says
+
+// 0 or 1 without a jump.
+void follow(bool wanted, double seconds, double& value, double& speed) {
+  springTo(wanted ? 1.0 : 0.0, kPlantRate, seconds, value, speed);
+  value = std::clamp(value, 0.0, 1.0);
+}
+
+}  // namespace
+
+void ContactReader::watch(const WatchedFoot& foot) {
+  const PlantDetector detector(setup_.sourceHipHeight);
+  feet_.push_back({foot, detector, detector, {}, 0, 0, std::nullopt, {}});
+  const std::string& name = setup_.source->joints[foot.ankle].name;
+  for (const ContactEdit& edit : setup_.options.contactEdits) {
+    if (edit.foot == name) feet_.back().edits.push_back(edit);
+  }
+}
+
+void ContactReader::next(const BodyFrame& source, double seconds) {
+  cut_ = jumps(source, seconds);
+  time_ += seconds;
+  for (Watched& watched : feet_) {
+    if (cut_) {
+      watched.ankle.reset();
+      watched.toes.reset();
+    }
+    const Vec3& ankle = source.positions[watched.foot.ankle];
+    watched.contact.rests = rests(watched, ankle, seconds);
+    watched.before = ankle;
+    read(watched, source, cut_ ? 0 : seconds);
+  }
+}
+
+// Nobody moves that fast.
+bool ContactReader::jumps(const BodyFrame& source, double seconds) {
+  landmarks_.assign(1, pelvisOf(setup_.map, MapSide::kSource, source.positions));
+  for (const Watched& watched : feet_) landmarks_.push_back(source.positions[watched.foot.ankle]);
+  const double jump = (frames_++ == 1 ? kFirstJump : kJump) * setup_.sourceHipHeight * seconds;
+  bool jumped = false;
+  for (std::size_t i = 0; i < landmarksBefore_.size(); ++i) {
+    jumped = jumped || (landmarks_[i] - landmarksBefore_[i]).norm() > jump;
+  }
+  std::swap(landmarksBefore_, landmarks_);
+  return jumped;
+}
+
+bool ContactReader::rests(Watched& watched, const Vec3& ankle, double seconds) const {
+  const double unit = setup_.sourceHipHeight;
+  if (!watched.before || ankle.y() - watched.foot.ankleGround >= kLow * unit) return false;
+  return (ankle - *watched.before).norm() < kSlow * seconds * unit;
+}
+
+void ContactReader::read(Watched& watched, const BodyFrame& source, double seconds) const {
+  const WatchedFoot& foot = watched.foot;
+  const Vec3& ankle = source.positions[foot.ankle];
+  bool heel = watched.ankle.next(ankle, ankle.y() - foot.ankleGround, seconds);
+  bool toes = false;
+  if (foot.toes) {
+    const Vec3& place = source.positions[*foot.toes];
+    toes = watched.toes.next(place, place.y() - foot.toesGround, seconds);
+  }
+  FootContact& contact = watched.contact;
+  if (const std::optional<bool> edited = editAt(watched)) {
+    const bool found = heel || toes;
+    heel = *edited && (heel || !found);
+    toes = *edited && (toes || (!found && foot.toes));
+    contact.rests = contact.rests && *edited;
+  }
+  contact.anchor = toes ? FootAnchor::kToes : heel ? FootAnchor::kAnkle : FootAnchor::kNone;
+  contact.flat = heel && toes;
+  follow(contact.anchor != FootAnchor::kNone, seconds, contact.strength, watched.strengthSpeed);
+  follow(contact.flat, seconds, contact.flatness, watched.flatSpeed);
+}
+
+std::optional<bool> ContactReader::editAt(const Watched& watched) const {
+  std::optional<bool> planted;
+  for (const ContactEdit& edit : watched.edits) {
+    if (time_ > edit.from - kSameMoment && time_ < edit.to + kSameMoment) planted = edit.planted;
+  }
+  return planted;
+}
+
+ContactTrack::ContactTrack(const RetargetSetup& setup, std::span<const WatchedFoot> feet, const PoseSequence& source)
+    : feet_(feet.size()), frameSeconds_(source.frameSeconds), hipHeight_(setup.sourceHipHeight) {
+  ContactReader reader(setup);
+  for (const WatchedFoot& foot : feet) reader.watch(foot);
+  BodyFrame frame;
+  for (std::size_t f = 0; f < source.poses.size(); ++f) {
+    setup.sourceKinematics.globals(source.poses[f], frame);
+    reader.next(frame, f == 0 ? 0 : source.frameSeconds);
+    cuts_.push_back(reader.atCut());
+    for (std::size_t i = 0; i < feet_; ++i) {
+      contacts_.push_back(reader.foot(i));
+      Place& place = places_.emplace_back();
+      place.ankle = frame.positions[feet[i].ankle];
+      if (feet[i].toes) place.toes = frame.positions[*feet[i].toes];
+    }
+  }
+}
+
+double ContactTrack::firmness(std::size_t frame, std::size_t foot) const {
+  const FootAnchor anchor = at(frame, foot).anchor;
+  if (anchor == FootAnchor::kNone) return 0;
+  const auto reach = static_cast<std::size_t>(std::max(1.0, std::round(kSeenSeconds / frameSeconds_)));
+  std::size_t before = frame, after = frame;
+  while (before > 0 && frame - before < reach && !cuts_[before]) --before;
+  while (after + 1 < frames() && after - frame < reach && !cuts_[after + 1]) ++after;
+  if (before == after) return 1;
+  const Place &from = placeAt(before, foot), &to = placeAt(after, foot);
+  const Vec3 way = anchor == FootAnchor::kToes ? to.toes - from.toes : to.ankle - from.ankle;
+  const double speed = Vec3(way.x(), 0, way.z()).norm() / (static_cast<double>(after - before) * frameSeconds_);
+  const double share = speed / (kFreeSpeed * hipHeight_);
+  return std::pow(kFreeFirmness, share * share);
+}
+
+std::vector<TimeSpan> ContactTrack::spans(std::size_t foot) const {
+  std::vector<TimeSpan> spans;
+  bool wasPlanted = false;
+  for (std::size_t f = 0; f < frames(); ++f) {
+    const bool planted = at(f, foot).anchor != FootAnchor::kNone;
+    const double now = static_cast<double>(f) * frameSeconds_;
+    if (planted && !wasPlanted) spans.push_back({now, now});
+    if (planted) spans.back().to = now;
+    wasPlanted = planted;
+  }
+  return spans;
+}
+
+}  // namespace limber

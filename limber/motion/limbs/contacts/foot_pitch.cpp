@@ -1,0 +1,86 @@
+#include "limber/motion/limbs/contacts/foot_pitch.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "limber/core/rotation.h"
+#include "limber/motion/limbs/limb_reach.h"
+#include "limber/motion/limbs/smooth.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kLong = 1.3;      // times the source's length, scaled: from there on
+constexpr double kFlat = 0.1;      // radians of pitch by which a foot that stands flat still lies half down
+constexpr double kSteepest = 0.5;  // that counts wholly, as the cosine of the sole's slope; not at all at its opposite
+
+// Radians that a foot slopes down from its ankle, past the vertical: from the first to the second its sole comes to
+// look up.
+constexpr double kSteepTip = 2.5, kUpTip = 3;
+constexpr double kSoftTip = 0.02;     // likewise
+constexpr double kNearlySteep = 0.9;  // height of an ankle, in lengths of the foot, over which any slope may do
+
+double lengthOf(const NeutralPose& neutral, Index ankle, Index toes) {
+  return (neutral.restPositions[toes] - neutral.restPositions[ankle]).norm();
+}
+
+double angleOf(const Vec3& a, const Vec3& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+// Of a foot whose ankle is at that height, in lengths of the foot, and whose tip is on the ground. Past the vertical it
+// goes on, so that nothing snaps.
+double slopeToGround(double height) {
+  return straightenedAsin(height, kNearlySteep);
+}
+
+Vec3 level(const Vec3& v) {
+  return {v.x(), 0, v.z()};
+}
+
+}  // namespace
+
+double footPitchShare(const RetargetSetup& setup, const Leg& leg) {
+  if (!leg.toes) return 1;
+  const double source = setup.scale * lengthOf(setup.sourceNeutral, leg.sourceEnd, *leg.sourceToes);
+  const double times = lengthOf(setup.targetNeutral, leg.end, *leg.toes) / (kLong * source);
+  return source > 0 && times > 1 ? 1 / (times * times) : 1;
+}
+
+void limitFootPitch(const RetargetSetup& setup, const RootPlacer& root, std::span<const Leg> legs, Pose& target,
+                    BodyFrame& frame) {
+  const NeutralPose& neutral = setup.targetNeutral;
+  for (const Leg& leg : legs) {
+    const double standing = setup.person ? leg.contact.flatness : 0;
+    if (!leg.toes || (leg.footPitch == 1 && standing == 0)) continue;
+    const Quat turn = frame.rotations[leg.end] * neutral.rotations[leg.end].conjugate();
+    const Vec3 stands = (neutral.positions[*leg.toes] - neutral.positions[leg.end]).normalized();
+    const Vec3 side = turn * Vec3::UnitX(), line = turn * stands;
+    const Vec3 resting = Eigen::AngleAxisd(std::atan2(-side.z(), side.x()), Vec3::UnitY()) * stands;
+    const double upright = std::hypot(side.x(), side.z()) * smoothStep(kSteepest + (turn * Vec3::UnitY()).y());
+    const double pitch = angleOf(line, resting), flat = standing * kFlat * kFlat / (kFlat * kFlat + pitch * pitch);
+    const double less = (1 - leg.footPitch * (1 - flat)) * upright;
+    const Vec3 wanted = ((1 - less) * line + less * resting).normalized();
+    const Quat limited = shortestRotation(line, wanted) * frame.rotations[leg.end];
+    LimbReach(setup, root).turnEnd(leg, limited, frame, target);
+  }
+}
+
+void keepTipUp(const RetargetSetup& setup, const RootPlacer& root, const Leg& leg, Pose& target, BodyFrame& frame) {
+  const NeutralPose& neutral = setup.targetNeutral;
+  const Vec3 ankle = frame.positions[leg.end], line = frame.positions[*leg.tip] - ankle;
+  const Quat turn = frame.rotations[leg.end] * neutral.rotations[leg.end].conjugate();
+  // Where the foot faces, also where it points straight down.
+  const Vec3 stands = neutral.positions[*leg.tip] - neutral.positions[leg.end];
+  const Vec3 ahead = level(turn * (level(stands).normalized() + Vec3::UnitY()));
+  const double along = line.dot(ahead.normalized()), length = std::hypot(along, line.y());
+  if (!(ahead.norm() > 1e-6) || !(length > 0)) return;
+  const double slope = std::atan2(line.y(), along);
+  const double share = std::clamp((kUpTip + slope) / (kUpTip - kSteepTip), 0.0, 1.0);
+  const double up = share * softPositive(-slopeToGround((ankle.y() - leg.toesGround) / length) - slope, kSoftTip);
+  const Quat raised = Eigen::AngleAxisd(up, ahead.normalized().cross(Vec3::UnitY())) * frame.rotations[leg.end];
+  LimbReach(setup, root).turnEnd(leg, raised, frame, target);
+}
+
+}  // namespace limber

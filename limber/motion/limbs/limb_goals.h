@@ -1,0 +1,104 @@
+// Where feet have to be: planted, on the ground, as the pelvis goes along. Shared by the methods that solve for it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "limber/motion/limbs/body/body_lift.h"
+#include "limber/motion/limbs/body/pelvis.h"
+#include "limber/motion/limbs/body/tail_lift.h"
+#include "limber/motion/limbs/contacts/contact_track.h"
+#include "limber/motion/limbs/leg_bend.h"
+#include "limber/motion/limbs/limb.h"
+
+namespace limber {
+
+// Goals frame after frame, without looking ahead. Nothing jumps when contacts come and go.
+class LimbGoals {
+ public:
+  // Both must outlive this.
+  LimbGoals(const RetargetSetup& setup, const RootPlacer& root);
+
+  // False where nothing needs correcting: nobody with legs, or the same body (RetargetSetup::sameBody).
+  bool active() const { return active_; }
+
+  // Reads which feet are planted in the source; wide hips, long feet and such as stand flat swing less than the
+  // source's (Pelvis::levelHips, limitFootPitch), and bodies that lie do so on the ground (BodyLift). Before setFeet(),
+  // of the target by joint angles alone.
+  void adaptPose(const BodyFrame& source, double seconds, Pose& target, BodyFrame& frame);
+  // Feet that are planted in the source stay where they came down, by their toes while the heel is up; none goes below
+  // the ground. From the globals of both. The goals are for legs whose hips go with
+  // the pelvis (Pelvis::moveFor).
+  void setFeet(const BodyFrame& source, const BodyFrame& target, double seconds);
+  // The lifted foot of a foot-driven leg comes as near to its hip as the source's does for its leg's length, and
+  // none stretches its leg wholly: knees else fold and snap. For hips that are where they stay.
+  void bendAsSource(Leg& leg, const BodyFrame& target) const;
+  // Whether the source jumped to the last frame: what was before it does not count.
+  bool atCut() const { return contacts_.atCut(); }
+  // Of the legs, for a ContactTrack of the whole motion.
+  std::vector<WatchedFoot> watchedFeet() const;
+  // Toes of a planted foot lie on the ground while the heel goes up, though recordings have them straight: else their
+  // tips would go below it. So do toes that the source lacks wherever they are near the ground, and their foot tips no
+  // further than lets them (keepTipUp). For a target that is posed but for that; soles that look up, as of someone who
+  // kneels, stay as they are.
+  void levelToes(const Leg& leg, BodyFrame& frame, Pose& target) const;
+
+  // How the pelvis follows these goals; `target` as for setFeet(). An animal's rises and sinks smoothly: as one of four
+  // feet lets go, the others would have to bend at once (feet on roots of their own let go slowly anyway).
+  Pelvis::Move pelvisMove(const BodyFrame& target) const;
+  const Pelvis& pelvis() const { return pelvis_; }
+  // For a target that is posed but for that.
+  const TailLift& tail() const { return tail_; }
+  std::vector<Leg>& legs() { return legs_; }
+
+ private:
+  // How fast a point of the free foot comes down, metres a second, without the recording's trembling.
+  struct Fall {
+    double speed = 0, change = 0;
+  };
+  // Of a leg's foot, what lasts from frame to frame.
+  struct FootState {
+    FootLock lock;
+    double changedSpeed = 0;
+    FootLock::Frame foot;  // as its joint angles have it
+    Fall ankleFall, toesFall;
+    Vec3 carried = Vec3::Zero();    // by its hip
+    std::optional<LegBend> bend;    // footDriven
+    Vec3 sourceEnd = Vec3::Zero();  // footDriven: in the frame before
+  };
+
+  struct Rise {
+    double value = 0, speed = 0;
+  };
+
+  Rise nextRise(const BodyFrame& target, double seconds) const;
+  void addPersonsLegs(const RootPlacer& root);
+  void addAnimalsLegs(const RootPlacer& root);
+  void addLeg(Leg leg);
+  void readFoot(Leg& leg, FootState& state, const BodyFrame& source, const BodyFrame& target, double seconds) const;
+  std::optional<Index> sourceBodyOf(const AnimalLeg& leg) const;
+  Quat turnOfBody(const Leg& leg, const BodyFrame& source) const;
+  Vec3 turnedAsBody(const Vec3& way, const Leg& leg, const BodyFrame& source) const;
+  Vec3 footDrivenPlace(const Leg& leg, const BodyFrame& source, const BodyFrame& target) const;
+  void readFootDriven(Leg& leg, FootState& state, const BodyFrame& source, double seconds) const;
+  static void followFall(double down, double seconds, Fall& fall);
+  void carryFeet(const BodyFrame& target, double seconds);
+  void setFoot(Leg& leg, const FootState& state, FootLock& lock, double seconds) const;
+  void keepAboveGround(Leg& leg, const FootLock::Frame& foot, const FootState& state) const;
+  double heightOverGround(const Leg& leg, const BodyFrame& target) const;
+  double loweredBy(double sourceGround, const Vec3& sourcePlace) const;
+
+  const RetargetSetup& setup_;
+  const RootPlacer& root_;
+  Pelvis pelvis_;
+  BodyLift lift_;
+  TailLift tail_;
+  std::vector<Leg> legs_;
+  ContactReader contacts_;         // of the legs
+  std::vector<FootState> states_;  // likewise
+  Rise rise_;                      // of the pelvis
+  bool active_ = true;
+};
+
+}  // namespace limber

@@ -1,0 +1,49 @@
+#include "limber/motion/mix/hold_pose.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "limber/core/error.h"
+#include "limber/motion/retarget/retarget_clip.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kStill = 1e-4;  // what retargeting leaves of frames that are alike
+
+Eigen::Vector4f numbersOf(const Vec3f& value) {
+  return {value.x(), value.y(), value.z(), 0};
+}
+
+Eigen::Vector4f numbersOf(const Eigen::Quaternionf& value) {
+  return value.coeffs();
+}
+
+template <class Value>
+bool areStill(const std::vector<Track<Value>>& tracks) {
+  return std::all_of(tracks.begin(), tracks.end(), [](const Track<Value>& track) {
+    return track.times.size() == 1 || std::all_of(track.values.begin(), track.values.end(), [&](const Value& value) {
+             return (numbersOf(value) - numbersOf(track.values.front())).cwiseAbs().maxCoeff() <= kStill;
+           });
+  });
+}
+
+}  // namespace
+
+bool isStill(const Clip& clip) {
+  return areStill(clip.translations) && areStill(clip.rotations) && areStill(clip.scales);
+}
+
+ClipWithContacts heldPose(const Skeleton& skeleton, const Clip& clip, double seconds, double frameSeconds) {
+  const double frames = std::ceil(seconds / frameSeconds - kWholeFrame) + 1;
+  if (!(frames <= kMostClipFrames)) {
+    throw Error(ErrorCode::kLimit, "a pose would be held for too many frames", clip.name, "choose a shorter time");
+  }
+  Pose pose = restPose(skeleton);
+  sampleClip(clip, 0, pose);
+  const PoseSequence held{std::vector<Pose>(static_cast<std::size_t>(frames), pose), frameSeconds};
+  return {clipOf(skeleton, held, clip.name), {}};
+}
+
+}  // namespace limber

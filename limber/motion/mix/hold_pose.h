@@ -1,0 +1,17 @@
+// A pose among motions: it has no rate, and lasts as long as the others need it to.
+#pragma once
+
+#include "limber/motion/mix/planted_feet.h"
+
+namespace limber {
+
+inline constexpr double kWholeFrame = 1e-6;  // of a frame's length: a frame that lacks less is whole
+
+// Whether nothing moves: one key, or keys that are all the same within 1e-4 (metres, components of quaternions).
+bool isStill(const Clip& clip);
+
+// Its first pose in frames `frameSeconds` apart, for so many seconds or up to a frame more. When feet are planted is
+// left to be read off it. Throws Error kLimit beyond kMostClipFrames.
+ClipWithContacts heldPose(const Skeleton& skeleton, const Clip& clip, double seconds, double frameSeconds);
+
+}  // namespace limber

@@ -1,0 +1,27 @@
+#include "limber/motion/mix/mix_body.h"
+
+namespace limber {
+
+namespace {
+
+RetargetSetup ontoItself(const Skeleton& skeleton) {
+  RetargetSetup setup(skeleton, skeleton, matchSkeletons(skeleton, skeleton), {});
+  setup.sameBody = false;  // nothing is retargeted: what is mixed has to be corrected all the same
+  return setup;
+}
+
+}  // namespace
+
+MixBody::MixBody(const Skeleton& skeleton)
+    : original_(skeleton),
+      plain_(skeleton),
+      setup_(ontoItself(plain_.skeleton())),
+      root_(setup_),
+      goals_(setup_, root_),
+      legs_(goals_.legs()) {
+  for (Leg& leg : legs_) leg.ownBend = leg.footDriven = false;
+  const JointMatch* pelvis = setup_.map.find(body_part::kPelvis);
+  pelvis_ = (pelvis ? *pelvis : setup_.map.matches.front()).target.front();
+}
+
+}  // namespace limber

@@ -1,0 +1,47 @@
+// Curves through the middle of a body and of what branches off it.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "limber/rigging/body/anatomical_frame.h"
+#include "limber/rigging/body/body_volume.h"
+
+namespace limber {
+
+// A curve through the middle of a part, from where it hangs to its end.
+struct BodyCurve {
+  struct Point {
+    Vec3 place =
+        Vec3::Zero();     // body space, but for its unit: the mesh's, so that what is low counts like what is high
+    double radius = 0;    // how deep it lies, mesh
+    double area = 0;      // of the section across the part, mesh squared
+    double flatness = 1;  // how many times wider than thick the section is
+  };
+  std::vector<Point>
+      points;  // two or more of a branch, a few grid cells apart; of a branch the first lies on its carrier
+  std::optional<std::size_t> carrier;  // the curve that it hangs on; none: the trunk
+  std::size_t at = 0;                  // the carrier's point there
+  bool isPaired = false;               // there is one on either side; this is the left one
+  double length = 0;
+
+  const Vec3& end() const { return points.back().place; }
+  // Of a branch: where it comes out of its carrier, half way into the flesh, as far aside as it comes out.
+  Vec3 root() const;
+  // The points' in the middle, of the outer two thirds.
+  double flatness() const;
+  double meanRadius() const;
+};
+
+// The level sets of the way through the inside from an end of the body are as many pieces as the body has parts there;
+// their centres make a tree of curves (Verroust, Lazarus: Extracting skeletal curves from 3D scattered data, 2000).
+// Only what there is on both sides counts; the trunk runs between left and right. Branches that are short for the
+// thickness of the body where they hang are left out.
+//
+// frame  of a symmetric body
+// The trunk comes first, from one end to the other, which are told apart by nobody yet; carriers come before what hangs
+// on them. Nothing where nothing lies between left and right. Cost: a few shortest ways through the grid.
+std::vector<BodyCurve> bodyCurves(const BodyVolume& body, const AnatomicalFrame& frame);
+
+}  // namespace limber

@@ -1,0 +1,39 @@
+// The inside of a model as a template sees it: how deep each place is, where the middle of its parts runs, and where
+// they end.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "limber/geometry/mesh/signed_distance.h"
+#include "limber/geometry/mesh/tri_mesh.h"
+
+namespace limber {
+
+// A ball inside the model that touches the surface on more than one side.
+struct MedialSphere {
+  Vec3 center = Vec3::Zero();
+  double radius = 0;
+};
+
+// The end of a limb: as far from the middle, inside the model, as it goes thereabouts.
+struct BodyTip {
+  Vec3 position = Vec3::Zero();
+  double reach = 0;  // way through the inside to the ends found before and the ways there; longest side 1
+};
+
+struct BodyVolume {
+  std::unique_ptr<const SignedDistance> distance;
+  std::vector<MedialSphere> spheres;  // deepest first, a few hundred
+  std::vector<BodyTip> tips;          // farthest first
+  double insideShare = 0;             // part of the grid's nodes that lie inside
+};
+
+// Whole pieces that are turned inside out are turned back first; what lies inside is told by the winding number.
+//
+// mesh  as prepareMesh makes it: longest side 1
+// Throws Error kUnsupported where nothing lies inside (a flat sheet), or inside and outside cannot be told apart. Cost:
+// O(#F log #F), and a grid of 80 cells along the longest side.
+BodyVolume measureBody(const TriMesh& mesh);
+
+}  // namespace limber

@@ -1,0 +1,68 @@
+#include "limber/rigging/body/medial_way.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace limber {
+
+namespace {
+
+constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+
+std::size_t nearestSphere(const std::vector<MedialSphere>& spheres, const Vec3& place) {
+  const auto apart = [&](const MedialSphere& sphere) { return (sphere.center - place).norm() - sphere.radius; };
+  const auto nearest =
+      std::min_element(spheres.begin(), spheres.end(),
+                       [&](const MedialSphere& a, const MedialSphere& b) { return apart(a) < apart(b); });
+  return static_cast<std::size_t>(nearest - spheres.begin());
+}
+
+// Spheres that all but touch, with the inside between them.
+bool joined(const BodyVolume& body, const MedialSphere& a, const MedialSphere& b) {
+  const double reach = a.radius + b.radius + 3 * body.distance->spacing();
+  return (a.center - b.center).squaredNorm() < reach * reach && body.distance->at(0.5 * (a.center + b.center)) < 0;
+}
+
+}  // namespace
+
+std::vector<Vec3> medialWay(const BodyVolume& body, const Vec3& from, const Vec3& to) {
+  const std::vector<MedialSphere>& spheres = body.spheres;
+  if (spheres.empty()) return {};
+  // Dijkstra from the end, so that the way comes out in order.
+  const std::size_t first = nearestSphere(spheres, from), last = nearestSphere(spheres, to);
+  std::vector<double> length(spheres.size(), std::numeric_limits<double>::infinity());
+  std::vector<std::size_t> next(spheres.size(), kNone);
+  std::vector<bool> done(spheres.size(), false);
+  length[last] = 0;
+  while (!done[first]) {
+    std::size_t at = kNone;
+    for (std::size_t s = 0; s < spheres.size(); ++s) {
+      if (!done[s] && length[s] < (at == kNone ? std::numeric_limits<double>::infinity() : length[at])) at = s;
+    }
+    if (at == kNone) return {};
+    done[at] = true;
+    for (std::size_t s = 0; s < spheres.size(); ++s) {
+      const double step = (spheres[s].center - spheres[at].center).norm();
+      if (length[at] + step >= length[s] || !joined(body, spheres[s], spheres[at])) continue;
+      length[s] = length[at] + step;
+      next[s] = at;
+    }
+  }
+  std::vector<Vec3> way;
+  for (std::size_t at = first; at != kNone; at = next[at]) way.push_back(spheres[at].center);
+  return way;
+}
+
+Vec3 alongWay(const std::vector<Vec3>& way, double share) {
+  double whole = 0;
+  for (std::size_t i = 1; i < way.size(); ++i) whole += (way[i] - way[i - 1]).norm();
+  double left = share * whole;
+  for (std::size_t i = 1; i < way.size(); ++i) {
+    const double step = (way[i] - way[i - 1]).norm();
+    if (left <= step && step > 0) return way[i - 1] + left / step * (way[i] - way[i - 1]);
+    left -= step;
+  }
+  return way.back();
+}
+
+}  // namespace limber

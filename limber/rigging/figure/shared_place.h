@@ -1,0 +1,31 @@
+// How much of their place the limbs of a figure share.
+#pragma once
+
+#include <array>
+
+#include "limber/rigging/figure/figure.h"
+
+namespace limber {
+
+// What a limb takes of space: places along its middle, and the bones beyond its root.
+struct LimbSpace {
+  struct Place {
+    Vec3 at;
+    double thick;
+  };
+  struct Bone {
+    Vec3 from, way;
+    double perLength2, thick;
+  };
+  std::array<Place, 8> places;
+  std::array<Bone, 3> bones;
+  Vec3 middle;       // of a ball that holds all of it
+  double reach = 0;  // radius of that ball
+};
+
+LimbSpace spaceOf(const Figure& figure, int limb);
+
+// Of each of both in the other, summed; 0 where they are apart.
+double sharedPlace(const LimbSpace& a, const LimbSpace& b);
+
+}  // namespace limber

@@ -1,0 +1,65 @@
+// Merging spheres two by two, cheapest first, down to one, and the record of it.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "limber/core/progress.h"
+#include "limber/rigging/sphere_mesh/collapse_graph.h"
+#include "limber/rigging/sphere_mesh/part_moments.h"
+#include "limber/rigging/sphere_mesh/sphere_quadric.h"
+
+namespace limber {
+
+// What is merged. A node is one sphere, or a sphere on the side x > 0 with its image in the plane x = 0.
+struct CollapseInput {
+  std::vector<SphereQuadric> quadrics;  // per node; of the sphere, not of its image
+  std::vector<PartMoments> moments;     // per node, likewise
+  std::vector<std::uint8_t> single;     // per node: 1 where it is one sphere
+  std::vector<GraphEdge> edges;         // connect everything, images included
+};
+
+// One step. Two single nodes, or a pair and its image: one sphere less. Two pairs, or a pair and a single node: two
+// spheres less at once.
+struct Merge {
+  Index kept = 0;                // node that stands for the result
+  Index gone = 0;                // kept itself where a pair merges with its own image
+  bool crosses = false;          // kept merged with the image of gone
+  bool single = false;           // the result is one sphere
+  Index keptBefore = 0;          // the merge that made kept, kNoIndex if it was still as it began
+  Index goneBefore = 0;          // likewise
+  Index countAfter = 0;          // spheres that are left, images counted
+  Index deadBegin = 0;           // edges that went with this merge: deadEdges from here
+  Index bridge = 0;              // of `bridges`: the count between, where two spheres go at once; else kNoIndex
+  float error = 0;               // least error of the result's quadric: what the merge costs
+  float planeError = 0;          // of the sphere below: squared distance to planes alone
+  Vec3f center = Vec3f::Zero();  // of the result, on the side of kept
+  float radius = 0;
+  float weight = 0;  // of the result's surface, of one sphere if it is a pair; all of the surface weighs 1
+};
+
+// A step by one sphere that keeps symmetry, taken instead of a merge when the count asked for falls inside that merge.
+struct Bridge {
+  Index a = 0, b = 0;  // two single nodes; or a pair, twice: it merges with its own image
+  Vec3f center = Vec3f::Zero();
+  float radius = 0;
+  float weight = 0;
+};
+
+struct CollapseSequence {
+  Index initialCount = 0;            // spheres before the first merge
+  std::vector<std::uint8_t> single;  // per node, before the first merge
+  std::vector<GraphEdge> edges;      // before the first merge
+  std::vector<Merge> merges;
+  std::vector<Index> deadEdges;   // every edge, in the order in which they went
+  std::vector<Index> absorbedBy;  // per node: the merge in which it was `gone`, kNoIndex for the last one
+  std::vector<Bridge> bridges;
+};
+
+// Greedy: each merge is, of all edges at that moment, the one with the least error of the joint quadric (as a float;
+// ties by edge index). Errors only grow as quadrics are added, so an edge's error from before a neighbour merged is a
+// lower bound of what it is now: an edge is evaluated again only when it reaches the top of the queue. Cost: O(#edges
+// log #edges) time; about 250 bytes a node.
+CollapseSequence collapse(const CollapseInput& input, Progress& progress);
+
+}  // namespace limber

@@ -1,0 +1,254 @@
+#include "limber/rigging/sphere_mesh/sphere_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "limber/core/parallel.h"
+#include "limber/rigging/sphere_mesh/handle_count.h"
+
+namespace limber {
+
+// The collapse stopped at a count.
+struct SphereMesh::Cut {
+  Index merges = 0;                // so many of them are done
+  const Bridge* bridge = nullptr;  // and then this step
+  Index loose = 0;                 // so many loose vertices are merged
+
+  // Living nodes by index, the merge that made each (or kNoIndex), and its first handle; a pair has two.
+  struct Node {
+    Index node = 0;
+    Index madeBy = 0;
+    Index handle = 0;
+    bool single = false;
+  };
+  std::vector<Node> nodes;
+
+  const Node& find(Index node) const {
+    return *std::lower_bound(nodes.begin(), nodes.end(), node,
+                             [](const Node& a, Index sought) { return a.node < sought; });
+  }
+  Index handleOf(EdgeEnd end) const {
+    const Node& node = find(nodeOf(end));
+    return node.handle + (crossesOf(end) && !node.single ? 1 : 0);
+  }
+};
+
+SphereMesh SphereMesh::build(const TriMesh& mesh, Progress& progress, Index mostStartNodes) {
+  if (mesh.positions.empty()) throw Error(ErrorCode::kBadData, "the model has no vertex");
+  if (mesh.positions.size() > kMostNodes / 2) {
+    throw Error(ErrorCode::kLimit,
+                fmt::format("the model has {} vertices; at most 2^30 can be rigged", mesh.positions.size()));
+  }
+  SphereMesh result;
+  std::optional<MirrorMap> mirror;
+  SurfaceEdges surface;
+  parallelInvoke([&] { mirror = findMirror(mesh, &progress); }, [&] { surface = surfaceEdges(mesh); });
+  progress.update(0);
+  if (mirror) result.mirror_ = mirror->plane;
+  result.frame_ = CollapseFrame::of(mesh, result.mirror_);
+  std::vector<Vec3f> points(mesh.positions.size());
+  parallelFor(points.size(), 16384, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) points[i] = result.frame_.toCollapse(mesh.positions[i]);
+  });
+  CollapseStart start = joinNearNodes(collapseStart(mesh, points, surface, mirror), mostStartNodes);
+  result.sequence_ = collapse(start.input, progress);
+  result.vertexEnds_ = std::move(start.vertexEnds);
+  result.nodeCenters_ = std::move(start.nodeCenters);
+  result.loose_ = std::move(start.loose);
+  for (const LooseVertex& loose : result.loose_) result.loosePositions_.push_back(mesh.positions[loose.vertex]);
+  for (const SphereQuadric& q : start.input.quadrics) result.nodeWeights_.push_back(static_cast<float>(q.weight()));
+  return result;
+}
+
+SphereMesh::Cut SphereMesh::cutAt(Index count) const {
+  if (count < 1 || count > mostSpheres()) refuseHandleCount(count, mostSpheres());
+  Cut cut;
+  const auto& merges = sequence_.merges;
+  if (count >= sequence_.initialCount) {
+    cut.loose = static_cast<Index>(loose_.size()) - (count - sequence_.initialCount);
+  } else {
+    cut.loose = static_cast<Index>(loose_.size());
+    const auto last =
+        std::partition_point(merges.begin(), merges.end(), [count](const Merge& m) { return m.countAfter > count; });
+    cut.merges = static_cast<Index>(last - merges.begin()) + (last->countAfter == count ? 1 : 0);
+    if (last->countAfter < count) cut.bridge = &sequence_.bridges[last->bridge];
+  }
+  listNodes(cut);
+  return cut;
+}
+
+// Undoes merges from the last one back: what each was made of is alive unless it has been undone itself.
+void SphereMesh::listNodes(Cut& cut) const {
+  const auto& merges = sequence_.merges;
+  const auto add = [&](Index node, Index madeBy) {
+    if (madeBy != kNoIndex && madeBy >= cut.merges) return;
+    const bool single = madeBy == kNoIndex ? sequence_.single[node] != 0 : merges[madeBy].single;
+    cut.nodes.push_back({node, madeBy, 0, single});
+  };
+  if (merges.empty()) {
+    add(0, kNoIndex);
+  } else {
+    add(merges.back().kept, static_cast<Index>(merges.size() - 1));
+  }
+  for (std::size_t i = merges.size(); i > cut.merges; --i) {
+    const Merge& m = merges[i - 1];
+    add(m.kept, m.keptBefore);
+    if (m.gone != m.kept) add(m.gone, m.goneBefore);
+  }
+  std::sort(cut.nodes.begin(), cut.nodes.end(), [](const auto& a, const auto& b) { return a.node < b.node; });
+  Index handle = 0;
+  for (Cut::Node& node : cut.nodes) {
+    node.handle = handle;
+    handle += node.single ? 1 : 2;
+  }
+}
+
+SphereMeshLevel SphereMesh::level(Index count) const {
+  const Cut cut = cutAt(count);
+  SphereMeshLevel level;
+  for (const Cut::Node& node : cut.nodes) {
+    const Merge* const m = node.madeBy == kNoIndex ? nullptr : &sequence_.merges[node.madeBy];
+    const Vec3f& center = m ? m->center : nodeCenters_[node.node];
+    for (int side = 0; side < (node.single ? 1 : 2); ++side) {
+      level.spheres.push_back(toMesh(center, m ? m->radius : 0, side == 1));
+      level.weights.push_back(m ? m->weight : nodeWeights_[node.node]);
+      if (mirror_) level.images.push_back(node.handle + (node.single ? 0 : 1 - side));
+    }
+  }
+  level.edges = edgesOf(cut);
+  if (cut.bridge) applyBridge(cut, level);
+  if (cut.loose < loose_.size()) appendLoose(cut, level);
+  std::sort(level.edges.begin(), level.edges.end());
+  level.edges.erase(std::unique(level.edges.begin(), level.edges.end()), level.edges.end());
+  return level;
+}
+
+// All edges that went after the cut were alive at it.
+std::vector<VertexPair> SphereMesh::edgesOf(const Cut& cut) const {
+  std::vector<VertexPair> edges;
+  if (cut.merges == sequence_.merges.size()) return edges;
+  const auto add = [&](Index a, Index b) {
+    if (a != b) edges.push_back({std::min(a, b), std::max(a, b)});
+  };
+  for (std::size_t i = sequence_.merges[cut.merges].deadBegin; i < sequence_.deadEdges.size(); ++i) {
+    const GraphEdge& e = sequence_.edges[sequence_.deadEdges[i]];
+    const EdgeEnd from = climb(makeEnd(e.from, false), cut.merges), to = climb(e.to, cut.merges);
+    add(cut.handleOf(from), cut.handleOf(to));
+    add(cut.handleOf(from ^ 1), cut.handleOf(to ^ 1));
+  }
+  return edges;
+}
+
+// The node that stands for `end` after so many merges, crossing where the way there leads to its image.
+EdgeEnd SphereMesh::climb(EdgeEnd end, Index mergeCount) const {
+  Index node = nodeOf(end);
+  bool crosses = crossesOf(end);
+  for (Index by = sequence_.absorbedBy[node]; by < mergeCount; by = sequence_.absorbedBy[node]) {
+    crosses = crosses != sequence_.merges[by].crosses;
+    node = sequence_.merges[by].kept;
+  }
+  return makeEnd(node, crosses);
+}
+
+// Makes one handle of two: those of two single nodes, or the two of a pair. The last handle takes the freed place.
+void SphereMesh::applyBridge(const Cut& cut, SphereMeshLevel& level) const {
+  const Bridge& bridge = *cut.bridge;
+  const Index first = cut.find(bridge.a).handle;
+  const Index second = bridge.a == bridge.b ? first + 1 : cut.find(bridge.b).handle;
+  const Index kept = std::min(first, second), gone = std::max(first, second);
+  const auto renamed = [&](Index handle) { return handle == gone ? kept : handle > gone ? handle - 1 : handle; };
+  level.spheres[kept] = toMesh(bridge.center, bridge.radius, false);
+  level.weights[kept] = bridge.weight;
+  level.images[kept] = kept;
+  level.spheres.erase(level.spheres.begin() + gone);
+  level.weights.erase(level.weights.begin() + gone);
+  level.images.erase(level.images.begin() + gone);
+  for (Index& image : level.images) image = renamed(image);  // no loose ones are left at a bridge
+  std::vector<VertexPair> edges;
+  for (const auto& [a, b] : level.edges) {
+    const Index from = renamed(a), to = renamed(b);
+    if (from != to) edges.push_back({std::min(from, to), std::max(from, to)});
+  }
+  level.edges = std::move(edges);
+}
+
+void SphereMesh::appendLoose(const Cut& cut, SphereMeshLevel& level) const {
+  for (std::size_t i = cut.loose; i < loose_.size(); ++i) {
+    const Index handle = static_cast<Index>(level.spheres.size());
+    level.edges.push_back({cut.handleOf(vertexEnds_[loose_[i].vertex]), handle});
+    level.spheres.push_back({loosePositions_[i].cast<double>(), 0});
+    level.weights.push_back(0);
+    level.images.push_back(kNoIndex);
+  }
+}
+
+std::vector<Index> SphereMesh::vertexHandles(Index count) const {
+  const Cut cut = cutAt(count);
+  // From the last merge back, the node that went is where the one that stayed is by then.
+  std::vector<EdgeEnd> ends(nodeCenters_.size());
+  for (Index node = 0; node < ends.size(); ++node) ends[node] = makeEnd(node, false);
+  for (std::size_t i = cut.merges; i > 0; --i) {
+    const Merge& m = sequence_.merges[i - 1];
+    if (m.gone != m.kept) ends[m.gone] = ends[m.kept] ^ static_cast<EdgeEnd>(m.crosses);
+  }
+  Index first = kNoIndex, second = kNoIndex;
+  if (cut.bridge) {
+    first = cut.find(cut.bridge->a).handle;
+    second = cut.bridge->a == cut.bridge->b ? first + 1 : cut.find(cut.bridge->b).handle;
+    if (first > second) std::swap(first, second);
+  }
+  std::vector<Index> nodeHandles(2 * ends.size(), kNoIndex);  // per living end
+  for (const Cut::Node& node : cut.nodes) {
+    for (const bool image : {false, true}) {
+      const Index handle = cut.handleOf(makeEnd(node.node, image));
+      nodeHandles[makeEnd(node.node, image)] = !cut.bridge || handle < second ? handle
+                                               : handle == second             ? first
+                                                                              : handle - 1;
+    }
+  }
+  std::vector<Index> handles(vertexEnds_.size());
+  for (std::size_t v = 0; v < handles.size(); ++v) {
+    handles[v] = nodeHandles[ends[nodeOf(vertexEnds_[v])] ^ (vertexEnds_[v] & 1)];
+  }
+  const Index looseBegin = cut.nodes.back().handle + (cut.nodes.back().single ? 1 : 2);
+  for (std::size_t i = cut.loose; i < loose_.size(); ++i) {
+    handles[loose_[i].vertex] = looseBegin + static_cast<Index>(i - cut.loose);
+  }
+  return handles;
+}
+
+std::vector<double> SphereMesh::errors(Index mostCount) const {
+  mostCount = std::min(mostCount, mostSpheres());
+  const auto& merges = sequence_.merges;
+  const auto errorOf = [&](Index madeBy) {
+    if (madeBy == kNoIndex) return 0.0;
+    return static_cast<double>(merges[madeBy].planeError) * (merges[madeBy].single ? 1 : 2);
+  };
+  std::vector<double> errors(std::size_t{mostCount} + 1, 0);
+  errors[0] = std::numeric_limits<double>::infinity();
+  double sum = merges.empty() ? 0 : errorOf(static_cast<Index>(merges.size() - 1));
+  if (mostCount >= 1) errors[1] = sum;
+  for (std::size_t i = merges.size(); i > 0; --i) {
+    const Merge& m = merges[i - 1];
+    const Index after = m.countAfter;
+    if (after + 1 > mostCount) break;
+    sum -= errorOf(static_cast<Index>(i - 1));
+    sum += errorOf(m.keptBefore);
+    if (m.gone != m.kept) sum += errorOf(m.goneBefore);
+    if (i == 1) sum = 0;  // nothing is merged: what is left is rounding
+    const Index before = i > 1 ? merges[i - 2].countAfter : sequence_.initialCount;
+    for (Index count = after + 1; count <= std::min(before, mostCount); ++count) errors[count] = std::max(sum, 0.0);
+  }
+  for (double& error : errors) error = std::sqrt(error) * frame_.scale;
+  return errors;
+}
+
+Sphere SphereMesh::toMesh(const Vec3f& center, float radius, bool image) const {
+  Vec3 c = center.cast<double>();
+  if (image) c.x() = -c.x();
+  return {frame_.axes * (frame_.scale * c) + frame_.origin, frame_.scale * radius};
+}
+
+}  // namespace limber

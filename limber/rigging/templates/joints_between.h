@@ -1,0 +1,13 @@
+// Joints of a template that are not searched for: they lie between those that are.
+#pragma once
+
+#include <vector>
+
+#include "limber/rigging/templates/template_skeleton.h"
+
+namespace limber {
+
+// Places the joints between anew, after others were moved: as the template has them between their placed neighbours.
+void placeBetween(const TemplateSkeleton& skeleton, std::vector<Vec3>& places);
+
+}  // namespace limber

@@ -1,0 +1,210 @@
+#include "limber/rigging/templates/quadruped_landmarks.h"
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "limber/rigging/body/leg_finder.h"
+#include "limber/rigging/body/medial_way.h"
+#include "limber/rigging/templates/joints_between.h"
+#include "limber/rigging/templates/template_embedding.h"
+
+namespace limber {
+
+namespace {
+
+// Heights.
+constexpr double kThinnestTrunk = 0.04;
+constexpr double kTailAside = 0.08;  // of a tail's end from the middle
+constexpr double kLowestTail = 0.1;
+constexpr double kShortestTail = 0.1;
+
+struct LegJoints {
+  Index upper = 0, lower = 0, foot = 0, toes = 0;
+};
+struct QuadrupedJoints {
+  std::array<LegJoints, 2> front, hind;  // left and right
+  Index hips = 0, chest = 0, neck = 0, tail = 0;
+  std::array<Index, 2> spine = {};
+  std::array<Index, 3> onTail = {};  // below its root, with the tip
+};
+
+std::optional<QuadrupedJoints> quadrupedJointsOf(const TemplateSkeleton& skeleton) {
+  QuadrupedJoints joints;
+  bool all = true;
+  const auto set = [&](Index& joint, const std::string& name) {
+    const std::optional<Index> found = skeleton.find(name);
+    all = all && found;
+    joint = found.value_or(0);
+  };
+  const char* sides[2] = {"left", "right"};
+  for (int side = 0; side < 2; ++side) {
+    for (const bool front : {true, false}) {
+      LegJoints& leg = front ? joints.front[side] : joints.hind[side];
+      const std::string of = std::string(sides[side]) + (front ? "Front" : "Hind");
+      set(leg.upper, of + "UpperLeg");
+      set(leg.lower, of + "LowerLeg");
+      set(leg.foot, of + "Foot");
+      set(leg.toes, of + "Toes");
+    }
+  }
+  set(joints.hips, "hips");
+  set(joints.spine[0], "spine");
+  set(joints.spine[1], "spine1");
+  set(joints.chest, "chest");
+  set(joints.neck, "neck");
+  set(joints.tail, "tail");
+  set(joints.onTail[0], "tail1");
+  set(joints.onTail[1], "tail2");
+  set(joints.onTail[2], "tailTip");
+  return all ? std::optional(joints) : std::nullopt;
+}
+
+struct Column {
+  double low = 0, high = 0;
+};
+
+class QuadrupedMover {
+ public:
+  QuadrupedMover(const BodyVolume& body, const AnatomicalFrame& frame, const std::vector<std::optional<Vec3>>& pins,
+                 std::vector<Vec3>& places, const QuadrupedProportions& proportions)
+      : body_(body), frame_(frame), pins_(pins), places_(places), proportions_(proportions) {}
+
+  bool frontLegs(const std::array<LegJoints, 2>& legs) {
+    LegFinder finder = follow(legs);
+    if (!finder.findParting()) return false;
+    for (int side = 0; side < 2; ++side) {
+      const Vec3 upper = upperJoint(finder, side, proportions_.shoulderUp);
+      moveTo(legs[side].upper, upper);
+      moveTo(legs[side].lower, finder.middle(side, proportions_.elbow * upper.y()));
+      moveTo(legs[side].foot, finder.middle(side, proportions_.frontFoot * upper.y()));
+      toes_[0][side] = finder.middle(side, proportions_.frontToes * upper.y());
+    }
+    return true;
+  }
+
+  bool hindLegs(const std::array<LegJoints, 2>& legs) {
+    LegFinder finder = follow(legs);
+    if (!finder.findParting()) return false;
+    for (int side = 0; side < 2; ++side) {
+      const Vec3 upper = upperJoint(finder, side, proportions_.hipUp);
+      Vec3 knee = finder.middle(side, proportions_.knee * upper.y());
+      knee.z() += proportions_.kneeForward * upper.y();
+      moveTo(legs[side].upper, upper);
+      moveTo(legs[side].lower, knee);
+      moveTo(legs[side].foot, finder.middle(side, proportions_.hock * upper.y()));
+      toes_[1][side] = finder.middle(side, proportions_.hindToes * upper.y());
+    }
+    return true;
+  }
+
+  void rear(const QuadrupedJoints& joints) {
+    const double legs = 0.5 * (places_[joints.hind[0].upper].z() + places_[joints.hind[1].upper].z());
+    moveInto(joints.hips, legs + proportions_.hipsForward, proportions_.hipsUp);
+    moveInto(joints.tail, legs + proportions_.tailForward, proportions_.tailUp);
+  }
+
+  void fore(const QuadrupedJoints& joints) {
+    const double legs = 0.5 * (places_[joints.front[0].upper].z() + places_[joints.front[1].upper].z());
+    moveInto(joints.chest, legs + proportions_.chestForward, proportions_.chestUp);
+    moveInto(joints.neck, legs + proportions_.neckForward, proportions_.neckUp);
+  }
+
+  // Along the tail from its root to the end of the body that lies farthest behind it in the middle.
+  void tail(const QuadrupedJoints& joints) {
+    const Vec3 root = places_[joints.tail];
+    std::optional<Vec3> end;
+    for (const BodyTip& tip : body_.tips) {
+      const Vec3 place = frame_.toBody(tip.position);
+      if (std::abs(place.x()) > kTailAside || place.y() < kLowestTail || place.z() > root.z()) continue;
+      if (!end || (place - root).norm() > (*end - root).norm()) end = place;
+    }
+    if (!end || (*end - root).norm() < kShortestTail) return;
+    std::vector<Vec3> way = medialWay(body_, frame_.fromBody(root), frame_.fromBody(*end));
+    if (way.empty()) return;
+    way.front() = frame_.fromBody(root);
+    way.push_back(frame_.fromBody(*end));
+    for (std::size_t i = 0; i < joints.onTail.size(); ++i) {
+      const double share = static_cast<double>(i + 1) / static_cast<double>(joints.onTail.size());
+      Vec3 place = frame_.toBody(alongWay(way, share));
+      if (frame_.symmetric()) place.x() = 0;
+      moveTo(joints.onTail[i], place);
+    }
+  }
+
+  // What lies between placed joints, but is seen.
+  void between(const QuadrupedJoints& joints, bool front, bool hind) {
+    for (int side = 0; side < 2; ++side) {
+      if (front) moveTo(joints.front[side].toes, toes_[0][side]);
+      if (hind) moveTo(joints.hind[side].toes, toes_[1][side]);
+    }
+    if (!front || !hind) return;
+    const double from = places_[joints.hips].z(), to = places_[joints.chest].z();
+    moveInto(joints.spine[0], from + (to - from) / 3, proportions_.spineUp);
+    moveInto(joints.spine[1], from + 2 * (to - from) / 3, proportions_.spineUp);
+  }
+
+ private:
+  LegFinder follow(const std::array<LegJoints, 2>& legs) const {
+    const auto leg = [](const LegJoints& of) { return LegChain{of.upper, of.lower, of.toes}; };
+    return LegFinder(body_, frame_, places_, leg(legs[0]), leg(legs[1]));
+  }
+
+  // The tallest part of the inside above and below a place.
+  std::optional<Column> columnAt(double x, double z) const {
+    const double step = 0.5 * body_.distance->spacing() / frame_.height;
+    std::optional<Column> tallest;
+    double low = 0;
+    bool inside = false;
+    for (double y = 0; y < 1 + 2 * step; y += step) {
+      const bool now = body_.distance->at(frame_.fromBody({x, y, z})) < 0;
+      if (now && !inside) low = y;
+      if (inside && !now && y - low > (tallest ? tallest->high - tallest->low : kThinnestTrunk)) tallest = {low, y};
+      inside = now;
+    }
+    return tallest;
+  }
+
+  // Of a leg, on the way from where it parts to the back above it.
+  Vec3 upperJoint(const LegFinder& finder, int side, double share) const {
+    Vec3 place = finder.middle(side, finder.parting());
+    const std::optional<Column> trunk = columnAt(0, place.z());
+    const double back = trunk ? std::max(trunk->high, finder.parting()) : finder.parting();
+    place.y() += share * (back - finder.parting());
+    return place;
+  }
+
+  void moveTo(Index joint, const Vec3& place) {
+    if (!pins_[joint]) places_[joint] = place;
+  }
+
+  void moveInto(Index joint, double z, double share) {
+    const std::optional<Column> trunk = columnAt(0, z);
+    if (trunk) moveTo(joint, {0, trunk->low + share * (trunk->high - trunk->low), z});
+  }
+
+  const BodyVolume& body_;
+  const AnatomicalFrame& frame_;
+  const std::vector<std::optional<Vec3>>& pins_;
+  std::vector<Vec3>& places_;
+  const QuadrupedProportions& proportions_;
+  std::array<std::array<Vec3, 2>, 2> toes_ = {};  // front and hind, left and right
+};
+
+}  // namespace
+
+void refineQuadruped(const TemplateSkeleton& skeleton, const BodyVolume& body, const AnatomicalFrame& frame,
+                     const std::vector<std::optional<Vec3>>& pins, std::vector<Vec3>& places,
+                     const QuadrupedProportions& proportions) {
+  const std::optional<QuadrupedJoints> joints = quadrupedJointsOf(skeleton);
+  if (!joints) return;
+  QuadrupedMover mover(body, frame, pins, places, proportions);
+  const bool fore = mover.frontLegs(joints->front), rear = mover.hindLegs(joints->hind);
+  if (fore) mover.fore(*joints);
+  if (rear) mover.rear(*joints);
+  placeBetween(skeleton, places);
+  mover.between(*joints, fore, rear);
+  mover.tail(*joints);
+}
+
+}  // namespace limber

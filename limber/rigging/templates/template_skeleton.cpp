@@ -1,0 +1,150 @@
+#include "limber/rigging/templates/template_skeleton.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "limber/core/error.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kStraight = 0.05;   // radians that a chain turns at a joint that lies between
+constexpr double kLeastBone = 0.04;  // heights of a bone whose end may be searched for
+constexpr double kSamePlace = 0.02;  // heights between a place and its mirror image
+
+struct SideWord {
+  std::string_view left, right;
+};
+constexpr SideWord kSides[] = {{"left", "right"}, {"Left", "Right"}, {".L", ".R"}, {".l", ".r"},
+                               {"_L", "_R"},      {"_l", "_r"},      {"-L", "-R"}, {"-l", "-r"}};
+
+// The name with its side turned, if it has one.
+std::optional<std::string> otherSide(const std::string& name) {
+  for (const SideWord& word : kSides) {
+    for (const auto& [own, other] : {std::pair(word.left, word.right), std::pair(word.right, word.left)}) {
+      const std::size_t at = name.rfind(own);
+      // Short signs count only at the end of a name or before a further part.
+      if (at == std::string::npos) continue;
+      const std::size_t end = at + own.size();
+      if (own.size() == 2 && end < name.size() && std::isalnum(static_cast<unsigned char>(name[end]))) continue;
+      return name.substr(0, at) + std::string(other) + name.substr(end);
+    }
+  }
+  return std::nullopt;
+}
+
+void findMirrors(TemplateSkeleton& skeleton) {
+  for (Index j = 0; j < skeleton.jointCount(); ++j) {
+    const std::optional<std::string> name = otherSide(skeleton.joints[j].name);
+    const std::optional<Index> other = name ? skeleton.find(*name) : std::nullopt;
+    if (!other) continue;
+    const Vec3 place = skeleton.joints[j].place, image = skeleton.joints[*other].place.cwiseProduct(Vec3(-1, 1, 1));
+    // Collars of motion files often stand in the middle both: those have no sides.
+    if ((image - place).norm() > kSamePlace || std::abs(place.x()) < 0.5 * kSamePlace) continue;
+    skeleton.joints[j].mirror = other;
+  }
+  for (Index j = 0; j < skeleton.jointCount(); ++j) {
+    const std::optional<Index> other = skeleton.joints[j].mirror;
+    if (other && skeleton.joints[*other].mirror != j) skeleton.joints[j].mirror.reset();
+  }
+}
+
+// Motion files have a joint of such a name where a limb ends.
+bool endsBone(std::string_view name) {
+  constexpr std::string_view kEnd = "_end";
+  return name.size() > kEnd.size() && name.substr(name.size() - kEnd.size()) == kEnd;
+}
+
+// Adds a tip to every leaf that is none, half as long as the bone above.
+void addTips(TemplateSkeleton& skeleton, const std::vector<Index>& children) {
+  const Index count = skeleton.jointCount();
+  for (Index j = 0; j < count; ++j) {
+    if (children[j] > 0) continue;
+    TemplateJoint& leaf = skeleton.joints[j];
+    if (endsBone(leaf.name) && leaf.parent) {
+      leaf.role = TemplateRole::kTip;
+      continue;
+    }
+    const Vec3 bone = leaf.parent ? Vec3(leaf.place - skeleton.joints[*leaf.parent].place) : Vec3(0, 0.2, 0);
+    TemplateJoint tip;
+    tip.name = leaf.name + " tip";
+    tip.parent = j;
+    tip.place = leaf.place + 0.5 * bone;
+    tip.role = TemplateRole::kTip;
+    tip.turnSpread = 0.7;
+    skeleton.joints.push_back(std::move(tip));
+  }
+}
+
+void chooseRoles(TemplateSkeleton& skeleton, const std::vector<Index>& children) {
+  for (Index j = 0; j < skeleton.jointCount(); ++j) {
+    TemplateJoint& joint = skeleton.joints[j];
+    if (!joint.parent) continue;
+    const Vec3 above = joint.place - skeleton.joints[*joint.parent].place;
+    if (children[j] > 1) continue;
+    bool between = above.norm() < kLeastBone;
+    if (children[j] == 1) {
+      const auto child = std::find_if(skeleton.joints.begin() + j + 1, skeleton.joints.end(),
+                                      [&](const TemplateJoint& other) { return other.parent == j; });
+      const Vec3 below = child->place - joint.place;
+      between = between || below.norm() < kLeastBone ||
+                std::acos(std::clamp(above.normalized().dot(below.normalized()), -1.0, 1.0)) < kStraight;
+    }
+    if (between) joint.role = TemplateRole::kBetween;
+  }
+}
+
+}  // namespace
+
+std::optional<Index> TemplateSkeleton::find(std::string_view joint) const {
+  for (Index j = 0; j < jointCount(); ++j) {
+    if (joints[j].name == joint) return j;
+  }
+  return std::nullopt;
+}
+
+Index placedAbove(const TemplateSkeleton& skeleton, Index joint) {
+  Index above = skeleton.joints[joint].parent.value();
+  while (skeleton.joints[above].role == TemplateRole::kBetween && skeleton.joints[above].parent) {
+    above = *skeleton.joints[above].parent;
+  }
+  return above;
+}
+
+TemplateSkeleton templateFrom(const Skeleton& skeleton, std::string_view name) {
+  if (skeleton.joints.empty()) {
+    throw Error(ErrorCode::kBadData, "the template has no joint", std::string(name));
+  }
+  checkSkeleton(skeleton);
+  const std::vector<Affine> globals = restGlobals(skeleton);
+  Box box;
+  for (const Affine& global : globals) box.add(global.translation());
+  const double height = box.size().y();
+  if (!(height > 1e-6 * box.longestSide())) {
+    throw Error(ErrorCode::kBadData, "all joints of the template lie at one height", skeleton.joints.front().name,
+                "its up must be +Y");
+  }
+  TemplateSkeleton result;
+  result.name = std::string(name);
+  result.summary = "a user's skeleton";
+  std::vector<Index> children(skeleton.jointCount(), 0);
+  for (Index j = 0; j < skeleton.jointCount(); ++j) {
+    TemplateJoint joint;
+    joint.name = skeleton.joints[j].name;
+    joint.parent = skeleton.joints[j].parent;
+    if (joint.parent) ++children[*joint.parent];
+    const Vec3 place = globals[j].translation() - Vec3(box.center().x(), box.min.y(), box.center().z());
+    joint.place = 0.95 * place / height;
+    result.joints.push_back(std::move(joint));
+  }
+  chooseRoles(result, children);
+  addTips(result, children);
+  findMirrors(result);
+  return result;
+}
+
+}  // namespace limber

@@ -1,0 +1,126 @@
+#include "limber/rigging/transfer/weight_projection.h"
+
+#include <algorithm>
+
+#include "limber/core/error.h"
+#include "limber/core/parallel.h"
+#include "limber/geometry/mesh/normals.h"
+
+namespace limber {
+
+namespace {
+
+// A point that faces about the same direction is taken while it is no farther than this many times the nearest one of
+// all, or than this part of the box's diagonal.
+constexpr double kMuchFarther = 4, kNearEnough = 0.01;
+constexpr std::size_t kProjectionGrain = 256;
+
+double diagonalOf(const TriMesh& mesh) {
+  Box box;
+  for (const Triangle& t : mesh.triangles) {
+    for (const Index v : t) box.add(mesh.position(v));
+  }
+  return box.diagonal();
+}
+
+bool hasWeights(const SkinWeights& weights, Index v) {
+  const std::span<const float> of = weights.weightsOf(v);
+  return std::any_of(of.begin(), of.end(), [](float w) { return w > 0; });
+}
+
+// The triangles that have a vertex with weights.
+std::vector<Index> weightedTriangles(const TriMesh& source, const SkinWeights& weights) {
+  std::vector<Index> triangles;
+  for (Index t = 0; t < source.triangleCount(); ++t) {
+    const Triangle& corners = source.triangles[t];
+    if (std::any_of(corners.begin(), corners.end(), [&](Index v) { return hasWeights(weights, v); })) {
+      triangles.push_back(t);
+    }
+  }
+  if (triangles.empty()) throw Error(ErrorCode::kBadArgument, "no vertex of the surface has any weights");
+  return triangles;
+}
+
+struct Share {
+  Index joint;
+  double weight;
+};
+
+void addShares(const TriMesh& source, const SkinWeights& weights, const SurfacePoint& point,
+               std::vector<Share>& shares) {
+  for (std::size_t corner = 0; corner < 3; ++corner) {
+    const Index v = source.triangles[point.triangle][corner];
+    for (Index slot = 0; slot < weights.slots; ++slot) {
+      const double weight = weights.weightsOf(v)[slot] * point.weights[static_cast<Eigen::Index>(corner)];
+      if (!(weight > 0)) continue;
+      const Index joint = weights.jointsOf(v)[slot];
+      const auto same = std::find_if(shares.begin(), shares.end(), [&](const Share& s) { return s.joint == joint; });
+      if (same != shares.end()) {
+        same->weight += weight;
+      } else {
+        shares.push_back({joint, weight});
+      }
+    }
+  }
+}
+
+void storeShares(std::vector<Share>& shares, Index vertex, SkinWeights& result) {
+  std::sort(shares.begin(), shares.end(), [](const Share& a, const Share& b) {
+    return a.weight != b.weight ? a.weight > b.weight : a.joint < b.joint;
+  });
+  if (shares.size() > result.slots) shares.resize(result.slots);
+  double sum = 0;
+  for (const Share& share : shares) sum += share.weight;
+  for (std::size_t slot = 0; slot < shares.size(); ++slot) {
+    result.joints[std::size_t{vertex} * result.slots + slot] = shares[slot].joint;
+    result.weights[std::size_t{vertex} * result.slots + slot] = static_cast<float>(shares[slot].weight / sum);
+  }
+}
+
+}  // namespace
+
+SurfaceProjector::SurfaceProjector(const TriMesh& source) : surface_(source), near_(kNearEnough * diagonalOf(source)) {}
+
+SurfacePoint SurfaceProjector::at(const Vec3& position, const Vec3& normal) const {
+  const SurfacePoint nearest = surface_.nearest(position);
+  const auto facing = surface_.nearestFacing(position, normal);
+  return facing && facing->distance <= std::max(near_, kMuchFarther * nearest.distance) ? *facing : nearest;
+}
+
+std::vector<SurfacePoint> takenAfter(const TriMesh& source, const TriMesh& target) {
+  const SurfaceProjector projector(source);
+  const std::vector<Vec3> normals = areaNormals<Vec3f>(target.positions, target.triangles);
+  std::vector<SurfacePoint> points(target.positions.size());
+  parallelFor(points.size(), kProjectionGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      points[v] = projector.at(target.position(static_cast<Index>(v)), normals[v]);
+    }
+  });
+  return points;
+}
+
+SkinWeights projectWeights(const TriMesh& source, const SkinWeights& weights, std::span<const SurfacePoint> points,
+                           Index slots) {
+  const Bvh weighted(source, weightedTriangles(source, weights));
+  SkinWeights result;
+  result.slots = slots;
+  result.joints.assign(points.size() * slots, 0);
+  result.weights.assign(points.size() * slots, 0.0f);
+  parallelFor(points.size(), kProjectionGrain, [&](std::size_t begin, std::size_t end) {
+    std::vector<Share> shares;
+    for (std::size_t v = begin; v < end; ++v) {
+      shares.clear();
+      addShares(source, weights, points[v], shares);
+      if (shares.empty()) {
+        SurfacePoint next = weighted.nearestPoint(points[v].position);
+        addShares(source, weights, next, shares);
+        next.weights = Vec3::Constant(1.0 / 3);  // on an edge between vertices without
+        if (shares.empty()) addShares(source, weights, next, shares);
+      }
+      storeShares(shares, static_cast<Index>(v), result);
+    }
+  });
+  return result;
+}
+
+}  // namespace limber

@@ -1,0 +1,41 @@
+// Where heat enters the surface: for each vertex its nearest bones in sight, and how strongly they hold it.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "limber/geometry/mesh/bvh.h"
+#include "limber/geometry/mesh/tri_mesh.h"
+#include "limber/skeleton/skeleton.h"
+
+namespace limber {
+
+struct HeatSourceOptions {
+  double heat = 4;             // c of the paper (there 1): larger keeps weights closer to the bones
+  bool facing = true;          // a bone in front of the surface rather than behind it counts as farther away
+  double tieTolerance = 1e-4;  // bones farther than the nearest by less than this part of its distance share the vertex
+  double minDistance = 5e-5;   // vertices nearer to a bone count as so far, in longest sides of the model
+  Index bonesTried = 1;        // how many of the nearest bones may be hidden before a vertex counts as seeing none
+};
+
+// For vertex v the joints first[v] to first[v + 1] of `joints`, ascending and different, each pull with `pull[v]`,
+// c / d^2 where d is the distance to the nearest bone's axis. With `facing`, distances are divided by (1 + cos) / 2 of
+// the angle between the way from the bone and the outward normal: the inner side of a thigh is not held by the other
+// leg's bone, however near that is. A vertex that sees no bone has none and pull 0.
+struct HeatSources {
+  std::vector<double> pull;   // #V
+  std::vector<Index> first;   // #V + 1
+  std::vector<Index> joints;  // at most a few for each vertex
+
+  std::span<const Index> jointsOf(Index v) const { return {joints.data() + first[v], first[v + 1] - first[v]}; }
+};
+
+// The nearest bone is the one whose surface (the points at its radius) is nearest. It is in sight when the segment from
+// the vertex to that surface passes through no triangle.
+//
+// bvh    over the whole mesh; null: every bone is in sight
+// Cost: O(#V #B) for distances and O(#V log #F) for sight, in parallel.
+HeatSources findHeatSources(const TriMesh& mesh, std::span<const Bone> bones, const Bvh* bvh,
+                            const HeatSourceOptions& options);
+
+}  // namespace limber

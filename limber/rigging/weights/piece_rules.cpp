@@ -1,0 +1,144 @@
+#include "limber/rigging/weights/piece_rules.h"
+
+#include <algorithm>
+#include <numeric>
+#include <optional>
+
+#include "limber/geometry/mesh/areas.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kPartsShare = 0.6;      // mean top share from which a model is one of parts
+constexpr double kPiecesPerJoint = 0.5;  // of which it then has at least so many
+constexpr double kSightOfParts = 0.05;   // vertices of a piece that must see a bone
+constexpr double kSightOfSkin = 0.25;
+constexpr double kRigidPart = 0.62;  // top share of a piece from which it is rigid
+constexpr double kRigidTrinket = 0.8;
+constexpr double kTrinketArea = 0.1;  // of the model
+constexpr double kBallCenter = 0.12;  // diagonals from the middle of a piece to the joint it is the ball of
+constexpr double kBallAspect = 2;     // longest side to shortest
+constexpr double kBallShare = 0.2;
+
+}  // namespace
+
+PieceRules::PieceRules(const TriMesh& mesh, std::span<const Bone> bones, const std::vector<Index>& piece,
+                       Index pieceCount, const std::vector<double>& pull)
+    : bones_(bones),
+      piece_(piece),
+      vertices_(pieceCount, 0),
+      seeing_(pieceCount, 0),
+      area_(pieceCount, 0),
+      box_(pieceCount) {
+  for (Index v = 0; v < mesh.vertexCount(); ++v) {
+    ++vertices_[piece[v]];
+    seeing_[piece[v]] += pull[v] > 0;
+    box_[piece[v]].add(mesh.position(v));
+  }
+  for (const Triangle& t : mesh.triangles) {
+    area_[piece[t[0]]] += triangleArea(mesh, t);
+  }
+  totalArea_ = std::accumulate(area_.begin(), area_.end(), 0.0);
+  std::vector<bool> hasBone;
+  for (const Bone& bone : bones) {
+    if (bone.joint >= hasBone.size()) hasBone.resize(bone.joint + std::size_t{1}, false);
+    hasBone[bone.joint] = true;
+  }
+  jointCount_ = static_cast<Index>(hasBone.size());
+  boneJoints_ = static_cast<Index>(std::count(hasBone.begin(), hasBone.end(), true));
+  order_.resize(piece.size());
+  std::iota(order_.begin(), order_.end(), Index{0});
+  std::stable_sort(order_.begin(), order_.end(), [&](Index v, Index w) { return piece[v] < piece[w]; });
+}
+
+double PieceRules::sight(Index piece) const {
+  return static_cast<double>(seeing_[piece]) / vertices_[piece];
+}
+
+// Piece by piece, the part of its vertices that each joint holds.
+void PieceRules::visitShares(const SkinWeights& weights, const ShareVisitor& visit) const {
+  std::vector<double> shares(jointCount_, 0);
+  for (std::size_t begin = 0, end = 0; begin < order_.size(); begin = end) {
+    const Index piece = piece_[order_[begin]];
+    std::fill(shares.begin(), shares.end(), 0.0);
+    for (; end < order_.size() && piece_[order_[end]] == piece; ++end) {
+      const Index v = order_[end];
+      for (Index slot = 0; slot < weights.slots; ++slot)
+        shares[weights.jointsOf(v)[slot]] += weights.weightsOf(v)[slot];
+    }
+    for (double& share : shares) share /= static_cast<double>(end - begin);
+    visit(piece, shares);
+  }
+}
+
+PieceRules::Top PieceRules::topOf(const std::vector<double>& shares) {
+  const auto most = std::max_element(shares.begin(), shares.end());
+  return {static_cast<Index>(most - shares.begin()), *most};
+}
+
+void PieceRules::classify(const SkinWeights& weights) {
+  double sum = 0, area = 0;
+  visitShares(weights, [&](Index piece, const std::vector<double>& shares) {
+    if (sight(piece) < kSightOfParts) return;
+    sum += area_[piece] * topOf(shares).share;
+    area += area_[piece];
+  });
+  madeOfParts_ = static_cast<double>(area_.size()) >= std::max(2.0, kPiecesPerJoint * boneJoints_) &&
+                 sum >= kPartsShare * area && area > 0;
+}
+
+void PieceRules::dropHardlySeen(InfluenceTable& weights) const {
+  const double least = madeOfParts_ ? kSightOfParts : kSightOfSkin;
+  // Loose vertices are no surface that the others could take weights from.
+  const bool allHidden =
+      std::none_of(piece_.begin(), piece_.end(), [&](Index p) { return area_[p] > 0 && sight(p) >= least; });
+  if (allHidden) return;
+  for (std::size_t v = 0; v < weights.vertexCount(); ++v) {
+    if (sight(piece_[v]) < least) weights.clear(v);
+  }
+}
+
+bool PieceRules::small(Index piece) const {
+  return area_[piece] <= kTrinketArea * totalArea_;
+}
+
+// The joint whose bone starts in the middle of a piece that is about as wide as long.
+std::optional<Index> PieceRules::jointAtMiddle(Index piece, const std::vector<double>& shares) const {
+  const Box& box = box_[piece];
+  if (box.longestSide() > kBallAspect * box.size().minCoeff()) return std::nullopt;
+  std::optional<Index> result;
+  double nearest = kBallCenter * box.diagonal();
+  for (const Bone& bone : bones_) {
+    const double distance = (bone.a - box.center()).norm();
+    if (distance >= nearest || shares[bone.joint] < kBallShare) continue;
+    nearest = distance;
+    result = bone.joint;
+  }
+  return result;
+}
+
+void PieceRules::bindRigid(SkinWeights& weights, Warnings& warnings) const {
+  PieceBinding binding(area_.size());
+  visitShares(weights, [&](Index piece, const std::vector<double>& shares) {
+    const Top top = topOf(shares);
+    if (madeOfParts_) {
+      binding[piece] = top.share >= kRigidPart ? top.joint : jointAtMiddle(piece, shares);
+    } else if (small(piece) && top.share >= kRigidTrinket) {
+      binding[piece] = top.joint;
+    }
+  });
+  bindPieces(binding, piece_, weights, warnings);
+}
+
+void bindPieces(const PieceBinding& binding, std::span<const Index> piece, SkinWeights& weights, Warnings& warnings) {
+  for (Index v = 0; v < weights.vertexCount(); ++v) {
+    if (binding[piece[v]]) bindTo(*binding[piece[v]], v, weights);
+  }
+  const auto bound = std::count_if(binding.begin(), binding.end(), [](const auto& joint) { return joint.has_value(); });
+  if (bound > 0) {
+    warnings.add("rigid-pieces", "pieces follow one joint each, as hard parts", {}, static_cast<std::size_t>(bound));
+  }
+}
+
+}  // namespace limber

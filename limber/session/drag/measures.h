@@ -1,0 +1,29 @@
+// Figures of a session as it stands, by which methods can be compared on a model that nobody has rigged before.
+#pragma once
+
+#include <optional>
+
+#include "limber/evaluate/motion/motion_metrics.h"
+#include "limber/session/session.h"
+
+namespace limber {
+
+struct SessionMeasures {
+  Index joints = 0;
+  double influences = 0;  // joints that hold a vertex by more than 1/256, mean
+  double smoothness = 0;  // sum over joints of |w_a - w_b|, 0 to 2, mean over the triangles' sides
+  // In the pose, against the model as bound.
+  double stretch = 0;                    // how much sides are longer or shorter, as a share of their length, mean
+  double volume = 0;                     // what the surface holds: 0.1 is a tenth more; 0 where it holds nothing
+  std::optional<double> targetDistance;  // metres from where held joints shall be, worst
+  std::optional<MotionMetrics> motion;   // of the chosen clip, where it is a motion between people
+};
+
+// Throws Error kBadArgument while nothing is open. Cost: O(#S), and that of measureMotion.
+SessionMeasures measureSession(const Session& session);
+
+// {"joints", "influences", "smoothness", "stretch", "volume", "target_distance": or null, "motion": or null, as
+// motionMetricsJson gives it}
+Json measuresToJson(const SessionMeasures& measures);
+
+}  // namespace limber

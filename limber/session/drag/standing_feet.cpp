@@ -1,0 +1,82 @@
+#include "limber/session/drag/standing_feet.h"
+
+#include <algorithm>
+
+namespace limber {
+
+namespace {
+
+constexpr double kStandsWithin = 0.05;  // of the leg's length: a foot this much higher than at rest stands still
+
+bool isLimb(const Part& part) {
+  return part.kind == PartKind::kLeg || part.kind == PartKind::kArm || part.kind == PartKind::kWing;
+}
+
+// The joint that a leg stands on.
+Index footOf(const Part& leg) {
+  return leg.end.value_or(leg.joints.back());
+}
+
+double lengthAlong(const Part& part, const std::vector<Affine>& globals) {
+  double length = 0;
+  for (std::size_t i = 1; i < part.joints.size(); ++i) {
+    length += (globals[part.joints[i]].translation() - globals[part.joints[i - 1]].translation()).norm();
+  }
+  return length;
+}
+
+const Part* legOf(const Anatomy& anatomy, Index foot) {
+  for (const Part& part : anatomy.parts) {
+    if (part.kind == PartKind::kLeg && !part.joints.empty() && footOf(part) == foot) return &part;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+bool hasLimbs(const Anatomy& anatomy) {
+  return anatomy.confidence >= kDoubtful && std::any_of(anatomy.parts.begin(), anatomy.parts.end(), isLimb);
+}
+
+std::vector<HeldTarget> standingFeet(const RiggedModel& rig, const Pose& pose) {
+  const Skeleton& skeleton = rig.skeleton();
+  const Anatomy& anatomy = rig.anatomy;
+  const std::vector<Affine> rest = restGlobals(skeleton), posed = poseGlobals(skeleton, pose);
+  std::vector<HeldTarget> feet;
+  if (!hasLimbs(anatomy)) return feet;
+  for (const Part& part : anatomy.parts) {
+    if (part.kind != PartKind::kLeg || part.joints.empty()) continue;
+    const Index foot = footOf(part);
+    if (!limbBase(skeleton, foot)) continue;
+    const double risen = anatomy.axes.up.dot(posed[foot].translation() - rest[foot].translation());
+    if (risen > kStandsWithin * lengthAlong(part, rest)) continue;
+    feet.push_back({foot, posed[foot].translation(), decompose(posed[foot]).rotation});
+  }
+  return feet;
+}
+
+std::vector<HeldTarget> heldDuringDrag(const RiggedModel& rig, const Pose& pose, const std::vector<HeldTarget>& targets,
+                                       Index dragged) {
+  std::vector<HeldTarget> held;
+  for (const HeldTarget& target : targets) {
+    const Part* leg = legOf(rig.anatomy, target.joint);
+    if (!leg || !isInLimbAbove(rig.skeleton(), dragged, target.joint)) {
+      held.push_back(target);
+    } else if (leg->toes) {
+      held.push_back({*leg->toes, poseGlobals(rig.skeleton(), pose)[*leg->toes].translation(), std::nullopt});
+    }
+  }
+  return held;
+}
+
+bool isInLimbAbove(const Skeleton& skeleton, Index above, Index joint) {
+  const std::optional<Index> base = limbBase(skeleton, joint);
+  if (!base || above == joint) return false;
+  for (Index j = joint; j != *base;) {
+    j = *skeleton.joints[j].parent;
+    if (j == above) return true;
+  }
+  return false;
+}
+
+}  // namespace limber

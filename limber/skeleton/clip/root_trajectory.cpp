@@ -1,0 +1,202 @@
+#include "limber/skeleton/clip/root_trajectory.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "limber/core/error.h"
+#include "limber/skeleton/clip/keys/keyframes.h"
+#include "limber/skeleton/motion.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kSampleRate = 60, kMostSamples = 1e6;  // of the path that is smoothed
+constexpr double kLeastRate = 30;                       // keys a second of the trajectory
+constexpr double kDeviations = 3;                       // where the Gaussian ends
+constexpr double kLeastTwist = 0.05;  // of 1: the part of a rotation about +Y, below which it has no heading
+
+// Rotation about +Y nearest to `turn`; nullopt where all are about as near.
+std::optional<double> twist(const Quat& turn) {
+  if (std::hypot(turn.y(), turn.w()) < kLeastTwist) return std::nullopt;
+  return 2 * std::atan2(turn.y(), turn.w());
+}
+
+// The angle plus whole turns that is nearest to the one before.
+double unwrapped(double angle, double before) {
+  return angle + 2 * std::numbers::pi * std::round((before - angle) / (2 * std::numbers::pi));
+}
+
+// Where the body is at one moment: x, y, z and heading.
+using Place = Eigen::Vector4d;
+
+class BodyPath {
+ public:
+  BodyPath(const Skeleton& skeleton, const Clip& clip, Index body) : clip_(clip), pose_(restPose(skeleton)) {
+    for (std::optional<Index> j = body; j; j = skeleton.joints[*j].parent) chain_.push_back(*j);
+    rest_ = global();
+  }
+
+  const Affine& rest() const { return rest_; }
+  bool has(Index joint) const { return std::find(chain_.begin(), chain_.end(), joint) != chain_.end(); }
+
+  // Calls go on in time, for the heading's sake.
+  Place at(double seconds) {
+    sampleClip(clip_, seconds, pose_);
+    const Affine now = global();
+    const Quat since(decompose(now).rotation * decompose(rest_).rotation.inverse());
+    heading_ = unwrapped(twist(since).value_or(heading_), heading_);
+    Place place;
+    place << now.translation(), heading_;
+    return place;
+  }
+
+ private:
+  Affine global() const {
+    Affine result = Affine::Identity();
+    for (const Index joint : chain_) result = pose_.locals[joint].toAffine() * result;
+    return result;
+  }
+
+  const Clip& clip_;
+  Pose pose_;
+  std::vector<Index> chain_;  // from the body up
+  Affine rest_;
+  double heading_ = 0;
+};
+
+std::vector<float> trajectoryTimes(const Clip& clip, const BodyPath& path) {
+  std::vector<double> keys = {0, clip.duration()};
+  const auto add = [&](const auto& tracks) {
+    for (const auto& track : tracks) {
+      if (!path.has(track.joint) || track.times.size() < 2) continue;
+      keys.insert(keys.end(), track.times.begin(), track.times.end());
+    }
+  };
+  add(clip.translations);
+  add(clip.rotations);
+  add(clip.scales);
+  const double frame = 1 / std::max(frameRateOf(clip), kLeastRate);
+  std::vector<float> times;
+  for (const double key : eachOnce(std::move(keys))) {
+    if (!times.empty()) {
+      const double before = times.back();
+      const double steps = std::min(std::round((key - before) / frame), kMostSamples);
+      for (double k = 1; k < steps; ++k) times.push_back(static_cast<float>(before + (key - before) * k / steps));
+    }
+    times.push_back(static_cast<float>(key));
+  }
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  return times;
+}
+
+// Evenly sampled places, and what lies beyond their ends.
+class SampledPath {
+ public:
+  SampledPath(BodyPath& path, double duration, bool loops) : loops_(loops) {
+    count_ = static_cast<std::ptrdiff_t>(std::clamp(std::ceil(duration * kSampleRate), 1.0, kMostSamples));
+    step_ = duration / static_cast<double>(count_);
+    for (std::ptrdiff_t i = 0; i <= count_; ++i) places_.push_back(path.at(step_ * static_cast<double>(i)));
+    // Cycle after cycle the stride goes where the body has turned to.
+    turn_ = places_.back().w() - places_.front().w();
+    const Quat turn(Eigen::AngleAxisd(turn_, Vec3::UnitY()));
+    stride_ = places_.back().head<3>() - turn * places_.front().head<3>();
+  }
+
+  void smooth(double deviation) {
+    const auto reach = static_cast<std::ptrdiff_t>(step_ > 0 ? std::ceil(kDeviations * deviation / step_) : 0);
+    std::vector<double> kernel;
+    double sum = 0;
+    for (std::ptrdiff_t k = -reach; k <= reach; ++k) {
+      const double x = static_cast<double>(k) * step_ / deviation;
+      kernel.push_back(reach > 0 ? std::exp(-0.5 * x * x) : 1);
+      sum += kernel.back();
+    }
+    std::vector<Place> result;
+    for (std::ptrdiff_t i = 0; i <= count_; ++i) {
+      Place place = Place::Zero();
+      for (std::ptrdiff_t k = -reach; k <= reach; ++k) place += kernel[k + reach] / sum * beyond(i + k);
+      result.push_back(place);
+    }
+    places_ = std::move(result);
+  }
+
+  Place at(double seconds) const {
+    const double place = step_ > 0 ? std::clamp(seconds / step_, 0.0, static_cast<double>(count_)) : 0;
+    const auto before = std::min(static_cast<std::ptrdiff_t>(place), count_ - 1);
+    const double u = place - static_cast<double>(before);
+    return (1 - u) * places_[before] + u * places_[before + 1];
+  }
+
+ private:
+  Place beyond(std::ptrdiff_t i) const {
+    if (i >= 0 && i <= count_) return places_[i];
+    if (!loops_) {
+      const Place& end = i < 0 ? places_.front() : places_.back();
+      const std::ptrdiff_t mirrored = std::clamp<std::ptrdiff_t>(i < 0 ? -i : 2 * count_ - i, 0, count_);
+      return 2 * end - places_[mirrored];
+    }
+    const std::ptrdiff_t cycles = i >= 0 ? i / count_ : -((-i + count_ - 1) / count_);
+    Place place = places_[i - cycles * count_];
+    const Quat turn(Eigen::AngleAxisd(cycles > 0 ? turn_ : -turn_, Vec3::UnitY()));
+    for (std::ptrdiff_t c = 0; c < std::abs(cycles); ++c) {
+      const Vec3 p = place.head<3>();
+      place.head<3>() = cycles > 0 ? Vec3(turn * p + stride_) : Vec3(turn * (p - stride_));
+      place.w() += cycles > 0 ? turn_ : -turn_;
+    }
+    return place;
+  }
+
+  bool loops_;
+  std::ptrdiff_t count_ = 1;
+  double step_ = 0, turn_ = 0;
+  Vec3 stride_ = Vec3::Zero();
+  std::vector<Place> places_;
+};
+
+}  // namespace
+
+Transform RootTrajectory::at(double seconds) const {
+  const auto next =
+      std::upper_bound(times.begin(), times.end(), seconds, [](double time, float key) { return time < key; });
+  const auto after = static_cast<std::size_t>(next - times.begin());
+  const std::size_t a = after == 0 ? 0 : after - 1, b = std::min(after, times.size() - 1);
+  const double u = a == b ? 0 : (seconds - times[a]) / (double{times[b]} - times[a]);
+  Transform result;
+  result.translation = (1 - u) * offsets[a] + u * offsets[b];
+  if (!headings.empty()) {
+    result.rotation = Eigen::AngleAxisd((1 - u) * headings[a] + u * headings[b], Vec3::UnitY());
+  }
+  return result;
+}
+
+RootTrajectory rootTrajectory(const Skeleton& skeleton, const Clip& clip, const RootMotionOptions& options) {
+  if (options.body >= skeleton.jointCount())
+    throw Error(ErrorCode::kBadArgument, "the body is no joint of the skeleton");
+  if (!(options.smoothing >= 0) || !std::isfinite(options.smoothing)) {
+    throw Error(ErrorCode::kBadArgument, "the smoothing of a trajectory must be a time, at least 0");
+  }
+  BodyPath path(skeleton, clip, options.body);
+  RootTrajectory result;
+  result.times = trajectoryTimes(clip, path);
+  std::vector<Place> places;
+  if (options.smoothing > 0) {
+    SampledPath sampled(path, clip.duration(), options.loops);
+    sampled.smooth(options.smoothing);
+    for (const float time : result.times) places.push_back(sampled.at(time));
+  } else {
+    for (const float time : result.times) places.push_back(path.at(time));
+  }
+  const Vec3 rest = path.rest().translation();
+  for (const Place& place : places) {
+    const double heading = options.heading ? place.w() : 0;
+    Vec3 offset = place.head<3>() - Eigen::AngleAxisd(heading, Vec3::UnitY()) * rest;
+    if (!options.height) offset.y() = 0;
+    result.offsets.push_back(offset);
+    if (options.heading) result.headings.push_back(heading);
+  }
+  return result;
+}
+
+}  // namespace limber

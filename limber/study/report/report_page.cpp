@@ -1,0 +1,303 @@
+#include "limber/study/report/report_page.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "limber/core/counted.h"
+#include "limber/core/file/file.h"
+#include "limber/core/text/names.h"
+#include "limber/document/uri.h"
+#include "limber/study/ranking/study_rankings.h"
+#include "limber/study/report/ballot_page.h"
+#include "limber/study/report/html_text.h"
+#include "limber/study/report/report_assets.h"
+#include "limber/study/report/time_plot.h"
+
+namespace limber {
+
+namespace {
+
+constexpr std::size_t kMostEmbedded = 13000000;  // bytes of pictures as text, of a page below 15 MB
+
+std::string numberCell(double value) {
+  return fmt::format("<td data-value=\"{}\"{}>{}</td>",
+                     std::isfinite(value) ? fmt::format("{}", value)
+                     : value < 0          ? "-Infinity"
+                                          : "Infinity",
+                     std::isfinite(value) ? "" : " class=\"bad\"", numberText(value));
+}
+
+constexpr const char* kNoNumber = "<td data-value=\"\">-</td>";
+
+std::string countCell(std::size_t count, bool isBad = false) {
+  return fmt::format("<td data-value=\"{0}\"{1}>{0}</td>", count, isBad && count > 0 ? " class=\"bad\"" : "");
+}
+
+struct Column {
+  std::string name;
+  bool isText = false;
+};
+
+std::string tableHead(std::string_view caption, const std::vector<Column>& columns) {
+  std::string html = fmt::format(
+      "<div class=\"scroll\" role=\"group\" tabindex=\"0\" "
+      "aria-label=\"{0}\"><table><caption>{0}</caption><thead><tr>",
+      htmlText(caption));
+  for (const Column& column : columns) {
+    html += fmt::format("<th scope=\"col\" aria-sort=\"none\"{}><button type=\"button\">{}</button></th>",
+                        column.isText ? " class=\"text\"" : "", htmlText(column.name));
+  }
+  return html + "</tr></thead><tbody>\n";
+}
+
+constexpr std::string_view kTableEnd = "</tbody></table></div>\n";
+
+std::string rowStart(std::string_view words) {
+  return fmt::format("<tr data-words=\"{}\">", htmlText(lowerCase(words)));
+}
+
+std::string textCell(std::string_view text) {
+  return fmt::format("<td class=\"text\">{}</td>", htmlText(text));
+}
+
+std::string cellLink(const StudyResult& study, std::size_t cell) {
+  return fmt::format("<td class=\"text\"><a href=\"#cell-{}\">{}</a></td>", cell,
+                     htmlText(study.cells[cell].subject()));
+}
+
+// In percent.
+std::string strengthCell(const VoteRanking& byEye, const std::string& method) {
+  const auto score = std::find_if(byEye.scores.begin(), byEye.scores.end(),
+                                  [&](const VoteScore& one) { return one.method == method; });
+  return score == byEye.scores.end() ? kNoNumber : numberCell(100 * score->strength);
+}
+
+// The medians of all measures that rank, or of those that do not, side by side: a line for each method, over all and in
+// each folder. byEye: the ranking by votes beside them, or null.
+std::string overview(const KindRankings& report, bool ranks, std::string_view title, const VoteRanking* byEye) {
+  std::vector<Column> columns = {{"method", true}, {"folder", true}};
+  for (const Ranking& ranking : report.groups.front().rankings) {
+    if (ranking.measure->ranks != ranks) continue;
+    columns.push_back({measureTitle(*ranking.measure)});
+  }
+  if (columns.size() == 2 && !byEye) return {};
+  if (byEye) columns.push_back({"by eye (%)"});
+  std::string html = tableHead(fmt::format("{}: {}", kindTitle(report.kind), title), columns);
+  for (const GroupRankings& group : report.groups) {
+    for (const std::string& method : report.methods) {
+      const auto isThere = [&](const Ranking& all) { return all.measure->ranks == ranks && all.scoreOf(method); };
+      const std::vector<Ranking>& all = report.groups.front().rankings;
+      if (!byEye && std::none_of(all.begin(), all.end(), isThere)) continue;
+      html +=
+          rowStart(method + " " + group.name) + textCell(method) + textCell(group.name.empty() ? "all" : group.name);
+      for (const Ranking& ranking : group.rankings) {
+        if (ranking.measure->ranks != ranks) continue;
+        const MethodScore* score = ranking.scoreOf(method);
+        html += score ? numberCell(score->value.median) : kNoNumber;
+      }
+      if (byEye) html += group.name.empty() ? strengthCell(*byEye, method) : kNoNumber;
+      html += "</tr>\n";
+    }
+  }
+  return html + std::string(kTableEnd);
+}
+
+std::string rankingTable(const Ranking& ranking) {
+  std::string html = tableHead(
+      fmt::format("Ranking by {}", ranking.measure->label),
+      {{"rank"}, {"method", true}, {"models"}, {"failed"}, {"median"}, {"95 % from"}, {"95 % to"}, {"time (s)"}});
+  for (std::size_t i = 0; i < ranking.scores.size(); ++i) {
+    const MethodScore& score = ranking.scores[i];
+    html += rowStart(score.method) + countCell(i + 1) + textCell(score.method) + countCell(score.subjects) +
+            countCell(score.failures, true) + numberCell(score.value.median) + numberCell(score.value.low) +
+            numberCell(score.value.high) + (score.seconds > 0 ? numberCell(score.seconds) : kNoNumber) + "</tr>\n";
+  }
+  return html + std::string(kTableEnd);
+}
+
+std::string pairTable(std::span<const MethodPair> pairs, std::string_view caption) {
+  if (pairs.empty()) return {};
+  std::string html =
+      tableHead(caption, {{"method", true}, {"against", true}, {"better"}, {"worse"}, {"the same"}, {"p"}});
+  for (const MethodPair& pair : pairs) {
+    html += rowStart(pair.first + " " + pair.second) + textCell(pair.first) + textCell(pair.second) +
+            countCell(pair.firstWins) + countCell(pair.secondWins) + countCell(pair.ties) + numberCell(pair.p) +
+            "</tr>\n";
+  }
+  return html + std::string(kTableEnd);
+}
+
+std::string votesHtml(const VoteRanking& byEye) {
+  std::string html = fmt::format(
+      "<details class=\"measure\" open><summary>By eye ({} of {}; more is better)</summary>\n"
+      "<p>Strength: the chance that a method is chosen beside one of middling strength (Bradley-Terry). The interval "
+      "is "
+      "of the votes.</p>\n",
+      counted(byEye.votes, "vote"), counted(byEye.voters, "voter"));
+  html +=
+      tableHead("Ranking by eye",
+                {{"rank"}, {"method", true}, {"votes"}, {"chosen (%)"}, {"strength (%)"}, {"95 % from"}, {"95 % to"}});
+  for (std::size_t i = 0; i < byEye.scores.size(); ++i) {
+    const VoteScore& score = byEye.scores[i];
+    html += rowStart(score.method) + countCell(i + 1) + textCell(score.method) + countCell(score.votes);
+    for (const double part : {score.chosen, score.strength, score.low, score.high}) html += numberCell(100 * part);
+    html += "</tr>\n";
+  }
+  return html + std::string(kTableEnd) + pairTable(byEye.pairs, "Are they different by eye? Sign test, p after Holm") +
+         "</details>\n";
+}
+
+std::string worstTable(const StudyResult& study, const Ranking& ranking) {
+  std::string html =
+      tableHead("Worst cells", {{"model", true}, {"method", true}, {std::string(ranking.measure->label)}});
+  for (const std::size_t cell : ranking.worstCells) {
+    const StudyCell& one = study.cells[cell];
+    html += rowStart(one.subject() + " " + one.group + " " + one.method()) + cellLink(study, cell) +
+            textCell(one.method()) + numberCell(study.results[cell].valueOf(*ranking.measure).value_or(0)) + "</tr>\n";
+  }
+  return html + std::string(kTableEnd);
+}
+
+std::string kindSection(const StudyResult& study, const KindRankings& report, const VoteRanking* byEye) {
+  std::string html = fmt::format("<section><h2>{}: rankings</h2>\n", kindTitle(report.kind)) +
+                     overview(report, true, "medians of all methods", byEye);
+  html += "<p>A method that failed on a model counts as worse there than any that did not.</p>\n";
+  if (byEye) html += votesHtml(*byEye);
+  bool isFirst = true;
+  for (const Ranking& ranking : report.groups.front().rankings) {
+    if (!ranking.measure->ranks) continue;
+    html += fmt::format("<details class=\"measure\"{}><summary>{}</summary>\n", isFirst ? " open" : "",
+                        htmlText(measureTitle(*ranking.measure)));
+    html += rankingTable(ranking) + timePlot(ranking) +
+            pairTable(ranking.pairs, "Are they different? Wilcoxon's signed rank test, p after Holm") +
+            worstTable(study, ranking) + "</details>\n";
+    isFirst = false;
+  }
+  return html + overview(report, false, "medians of measures that rank nothing", nullptr) + "</section>\n";
+}
+
+std::string failureSection(const StudyResult& study) {
+  std::string rows;
+  for (std::size_t i = 0; i < study.cells.size(); ++i) {
+    const CellResult& result = study.results[i];
+    if (result.outcome == JobOutcome::kDone) continue;
+    const StudyCell& cell = study.cells[i];
+    rows += rowStart(cell.subject() + " " + cell.group + " " + cell.method()) + cellLink(study, i) +
+            textCell(cell.method()) + textCell(jobOutcomeName(result.outcome)) +
+            fmt::format("<td class=\"text wrap\">{}</td></tr>\n", htmlText(result.problem));
+  }
+  if (rows.empty()) return {};
+  return "<section><h2>What did not end well</h2>\n" +
+         tableHead("Cells that failed", {{"model", true}, {"method", true}, {"outcome", true}, {"why", true}}) + rows +
+         std::string(kTableEnd) + "</section>\n";
+}
+
+// Where a picture is, as an attribute has it: its bytes, or its name beside the page.
+using PictureSource = std::function<std::string(const CellPicture&)>;
+
+PictureSource pictureSource(const StudyResult& study, const std::filesystem::path& folder) {
+  std::size_t total = 0;
+  for (const CellResult& result : study.results) {
+    for (const CellPicture& picture : result.pictures) {
+      std::error_code unseen;
+      const std::uintmax_t size = std::filesystem::file_size(folder / picture.file, unseen);
+      if (!unseen) total += static_cast<std::size_t>((size + 2) / 3 * 4);
+    }
+  }
+  if (total > kMostEmbedded)
+    return [](const CellPicture& picture) { return htmlText(percentEncode(picture.file.generic_string())); };
+  return [folder](const CellPicture& picture) {
+    return "data:image/png;base64," + encodeBase64(readFile(folder / picture.file));
+  };
+}
+
+std::string pictureHtml(const CellPicture& picture, const std::string& alt, const PictureSource& source) {
+  const bool moves = picture.name == "motion", isSheet = picture.name == "stretch";
+  const std::string image = fmt::format(
+      "<img loading=\"lazy\"{4} data-picture=\"{0}\" alt=\"{0}: {1}\" src=\"{2}\" width=\"{3}\" height=\"{3}\">",
+      htmlText(picture.name), htmlText(alt), source(picture), isSheet ? 224 : 160, isSheet ? " class=\"sheet\"" : "");
+  // Whoever does not want things to move does not open it.
+  return moves ? "<details><summary>Motion</summary>" + image + "</details>" : image;
+}
+
+std::string cellFigure(const StudyResult& study, std::size_t index, const PictureSource& source) {
+  const StudyCell& cell = study.cells[index];
+  const CellResult& result = study.results[index];
+  std::string html = fmt::format(
+      "<figure id=\"cell-{0}\" data-words=\"{1}\" data-kind=\"{2}\" data-subject=\"{3}\" data-method=\"{4}\">"
+      "<figcaption>{4}</figcaption>\n",
+      index, htmlText(lowerCase(cell.subject() + " " + cell.group + " " + cell.method())), cellKindName(cell.kind),
+      htmlText(cell.subject()), htmlText(cell.method()));
+  for (const CellPicture& picture : result.pictures) {
+    html += pictureHtml(picture, cell.subject() + " by " + cell.method(), source);
+  }
+  if (!result.problem.empty()) {
+    html += fmt::format("<p class=\"bad\">{}: {}</p>", jobOutcomeName(result.outcome), htmlText(result.problem));
+  }
+  std::string values;
+  for (const MeasuredValue& one : result.measures) {
+    values +=
+        fmt::format("{}{}: {}", values.empty() ? "" : "<br>", htmlText(one.measure->label), numberText(one.value));
+    if (!one.measure->unit.empty()) values += fmt::format(" ({})", htmlText(one.measure->unit));
+  }
+  html += "<details><summary>Figures and commands</summary><p>" + values + "</p><pre>";
+  for (const CellStep& step : cell.steps) html += htmlText(commandText(step)) + "\n";
+  return html + "</pre><button type=\"button\" class=\"copy\">Copy commands</button></details></figure>\n";
+}
+
+std::string pictureSection(const StudyResult& study, const PictureSource& source) {
+  std::string html = "<section><h2>Side by side</h2>\n";
+  std::string subject;
+  bool isOpen = false;
+  for (std::size_t i = 0; i < study.cells.size(); ++i) {
+    const std::string next = fmt::format("{}: {}", kindTitle(study.cells[i].kind), study.cells[i].subject());
+    if (!isOpen || next != subject) {
+      html += fmt::format("{}<div class=\"subject\"><h3>{}</h3><div class=\"cells\">\n", isOpen ? "</div></div>\n" : "",
+                          htmlText(next));
+      subject = next;
+      isOpen = true;
+    }
+    html += cellFigure(study, i, source);
+  }
+  return html + (isOpen ? "</div></div>\n" : "") + "</section>\n";
+}
+
+std::string header(const StudyResult& study) {
+  const auto failed = std::count_if(study.results.begin(), study.results.end(),
+                                    [](const CellResult& r) { return r.outcome != JobOutcome::kDone; });
+  return fmt::format(
+      "<header><h1>{}</h1>\n<p>{}, of which {} did not end well. All figures: <a href=\"cells.csv\">cells.csv</a>, "
+      "<a href=\"cells.json\">cells.json</a>; to quote: <a href=\"summary.md\">summary.md</a>. "
+      "<a href=\"#ballot\" hidden>Judge by eye</a></p>\n"
+      "<label for=\"filter\">Show only what has these words</label>"
+      "<input type=\"search\" id=\"filter\" placeholder=\"model, method or folder\"> "
+      "<span id=\"shown\" role=\"status\"></span></header>\n",
+      htmlText(study.title), counted(study.cells.size(), "cell"), failed);
+}
+
+}  // namespace
+
+std::string reportPage(const StudyResult& study, const std::filesystem::path& folder,
+                       std::span<const VoteRanking> byEye) {
+  std::string html = fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">"
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data: file: 'self'; "
+      "style-src 'unsafe-inline'; script-src 'unsafe-inline'\">"
+      "<title>{}</title><style>{}{}</style></head><body>\n{}<main>\n",
+      htmlText(study.title), kReportStyle, kBallotStyle, header(study));
+  for (const KindRankings& report : studyRankings(study)) {
+    const auto votes =
+        std::find_if(byEye.begin(), byEye.end(), [&](const VoteRanking& one) { return one.kind == report.kind; });
+    html += kindSection(study, report, votes == byEye.end() ? nullptr : &*votes);
+  }
+  html += failureSection(study) + ballotSection(study) + pictureSection(study, pictureSource(study, folder));
+  return html + fmt::format("</main><script>{}{}</script></body></html>\n", kReportScript, kBallotScript);
+}
+
+}  // namespace limber
