@@ -7,6 +7,7 @@
 #include "limber/core/progress.h"
 
 // Models and motions: files in, files out, and what is in them.
+#include "limber/character/character.h"
 #include "limber/document/asset.h"
 #include "limber/document/clip/clip_io.h"
 #include "limber/document/clip/motion_io.h"

@@ -62,7 +62,7 @@ MixFigures figuresOf(const MixBody& body, const Clip& clip, double rate) {
 }
 
 ClipWithContacts onto(Asset& character, const std::filesystem::path& motion) {
-  return retargetedClips(character, readMotion(motion), {}, true).clips.front();
+  return retargetedClips(Character(character), readMotion(motion), {}, true, character.warnings).clips.front();
 }
 
 }  // namespace

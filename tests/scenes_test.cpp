@@ -100,10 +100,10 @@ TEST_P(ExampleScenes, KeepsItsSurfaceWhole) {
     return (at[t[1]] - at[t[0]]).cross(at[t[2]] - at[t[0]]).norm();
   };
   std::size_t collapsed = 0;
-  for (const Triangle& t : rig.geometry->triangles) {
-    collapsed += area(posed, t) < 0.1f * area(rig.geometry->positions, t);
+  for (const Triangle& t : rig.geometry().triangles) {
+    collapsed += area(posed, t) < 0.1f * area(rig.geometry().positions, t);
   }
-  EXPECT_LT(collapsed, rig.geometry->triangles.size() / 100);
+  EXPECT_LT(collapsed, rig.geometry().triangles.size() / 100);
 }
 
 TEST_P(ExampleScenes, IsTheSameWhenDoneTwice) {

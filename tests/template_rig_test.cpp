@@ -157,7 +157,7 @@ TEST_P(TemplateStrides, ComeNearTheArtistsSkeleton) {
   Motion motion = readMotion(*sharedDataFolder() / "motions" / "kaykit_movementbasic.glb");
   std::erase_if(motion.clips, [](const Clip& clip) { return clip.name != "Rig_Medium|Walking_A"; });
   Asset asset = readAsset(*sharedDataFolder() / "rigged" / GetParam().file);
-  retargetOnto(asset, motion, {});
+  retargetOnto(asset, Character(asset), motion, {});
   standAt(asset, {"", GetParam().seconds});
   const Rigged result = rigged(asset, templateOptions("humanoid"));
   const RigComparison comparison = compareRigs(readAsset(result.glb, "result.glb"), asset);

@@ -128,7 +128,7 @@ void runMatrix(const MatrixOptions& options) {
   RetargetTrial trial = options.trial;
   trial.motions.assign(options.motions.begin(), options.motions.end());
   trial.characters.assign(options.characters.begin(), options.characters.end());
-  trial.prepare = asItRests;
+  trial.prepare = [](Motion motion) { return asItRests(std::move(motion)); };
   for (const std::string& method : trial.methods) findRetargetMethod(method);
   TerminalProgress progress(options.common.quiet);
   Warnings skipped;

@@ -10,6 +10,7 @@
 #include "limber/actions/pose/pose_asset.h"
 #include "limber/actions/pose/put_pose.h"
 #include "limber/actions/rig/body_masses.h"
+#include "limber/character/character.h"
 #include "limber/core/text/names.h"
 #include "limber/deform/deformer.h"
 #include "limber/document/clip/clip_moment.h"
@@ -109,11 +110,10 @@ Pose startPose(Asset& asset, const AssetSkeleton& skeleton, const PoseArguments&
 }
 
 // As heavy as the skin says, where there is one: only balance asks.
-std::vector<PointMass> massesFor(const PoseEdits& edits, const Asset& asset, const AssetSkeleton& skeleton) {
+std::vector<PointMass> massesFor(const PoseEdits& edits, const Character& character) {
   const auto isBalance = [](const TaskEdit& task) { return task.kind == TaskKind::kBalance; };
   if (std::none_of(edits.tasks.begin(), edits.tasks.end(), isBalance)) return {};
-  const Geometry geometry = collectGeometry(asset);
-  return bodyMasses(geometry, readWeights(asset, geometry, skeleton), skeleton.skeleton);
+  return bodyMasses(character.surface(), character.weights(), character.binding().skeleton);
 }
 
 std::string_view outcomeText(IkOutcome outcome) {
@@ -174,7 +174,8 @@ void run(PoseArguments options) {
   if (!hasRig(asset)) {
     throw Error(ErrorCode::kBadArgument, "the model has no rig to pose", asset.name, "limber rig gives it one");
   }
-  const AssetSkeleton skeleton = readSkeleton(asset);
+  const Character character(asset);
+  const AssetSkeleton& skeleton = character.binding();
   Pose pose = startPose(asset, skeleton, options);
   progress->stage("pose");
   if (!options.applied.empty()) pose = putPose(portablePose(options.applied), skeleton.skeleton, pose);
@@ -184,7 +185,7 @@ void run(PoseArguments options) {
   IkTaskResult tasks;
   if (!edits.tasks.empty()) {
     tasks = applyTasks(skeleton.skeleton, pose, edits.tasks, limits ? &*limits : nullptr,
-                       {options.pose.ik, massesFor(edits, asset, skeleton)});
+                       {options.pose.ik, massesFor(edits, character)});
   }
   progress->stage("write");
   const Warnings written = writeResult(asset, skeleton, pose, options);

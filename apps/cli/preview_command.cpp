@@ -7,6 +7,7 @@
 
 #include "command.h"
 #include "deformer_list.h"
+#include "limber/character/character.h"
 #include "limber/core/file/file.h"
 #include "limber/deform/deformer.h"
 #include "limber/document/clip/motion_io.h"
@@ -128,8 +129,8 @@ Bytes rangePicture(const Asset& asset, const SceneMaker& scenes, int worst, cons
     throw Error(ErrorCode::kUnsupported, "has no rig by which it could be stretched", asset.name,
                 "make one with limber rig");
   }
-  const Skeleton skeleton = animatedSkeleton(asset).skeleton;
-  std::vector<RangeOfMotionPose> range = rangeOfMotion(skeleton, readAnatomy(skeleton));
+  const Character character(asset);
+  std::vector<RangeOfMotionPose> range = rangeOfMotion(character.skeleton(), character.anatomy());
   if (range.empty()) {
     throw Error(ErrorCode::kUnsupported, "has no part of a body that could be bent", asset.name,
                 "name a clip by --clip, and --time or --frames");

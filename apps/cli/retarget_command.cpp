@@ -94,8 +94,8 @@ void prepare(RetargetArguments& options) {
   }
 }
 
-std::vector<RetargetedClip> addCombined(Asset& asset, const RetargetArguments& options, Progress& progress,
-                                        Warnings& warnings) {
+std::vector<RetargetedClip> addCombined(Asset& asset, const Character& character, const RetargetArguments& options,
+                                        Progress& progress, Warnings& warnings) {
   progress.stage("retarget");
   const MotionOptions reading = options.motionFiles.options();
   std::vector<Motion> motions;
@@ -104,15 +104,15 @@ std::vector<RetargetedClip> addCombined(Asset& asset, const RetargetArguments& o
     warnings.append(motions.back().warnings);
   }
   asset.warnings = {};
-  std::vector<RetargetedClip> clips = combineOnto(asset, motions, options.retarget, *options.combine);
+  std::vector<RetargetedClip> clips = combineOnto(asset, character, motions, options.retarget, *options.combine);
   warnings.append(asset.warnings);
   return clips;
 }
 
 // Adds all motions' clips; the map that is saved is that of the first motion.
-std::vector<RetargetedClip> addMotions(Asset& asset, const RetargetArguments& options, Progress& progress,
-                                       Warnings& warnings) {
-  if (options.combine) return addCombined(asset, options, progress, warnings);
+std::vector<RetargetedClip> addMotions(Asset& asset, const Character& character, const RetargetArguments& options,
+                                       Progress& progress, Warnings& warnings) {
+  if (options.combine) return addCombined(asset, character, options, progress, warnings);
   std::vector<RetargetedClip> clips;
   const MotionOptions reading = options.motionFiles.options();
   for (std::size_t i = 0; i < options.motions.size(); ++i) {
@@ -123,11 +123,11 @@ std::vector<RetargetedClip> addMotions(Asset& asset, const RetargetArguments& op
     try {
       ProgramClips made;
       if (options.program) {
-        made = retargetByProgram(asset, motion, *options.program, options.retarget, progress);
+        made = retargetByProgram(asset, character, motion, *options.program, options.retarget, progress);
         warnings.append(made.warnings);
       } else {
         asset.warnings = {};
-        made.clips = retargetOnto(asset, motion, options.retarget);
+        made.clips = retargetOnto(asset, character, motion, options.retarget);
         warnings.append(asset.warnings);
       }
       for (RetargetedClip& clip : made.clips) clips.push_back(std::move(clip));
@@ -207,8 +207,9 @@ void runRetarget(RetargetArguments options) {
     throw Error(ErrorCode::kBadArgument, "the model has no rig to move", asset.name, "limber animate rigs it first");
   }
   Warnings warnings = asset.warnings;
-  options.retarget.turn = standUpright(asset, warnings);
-  const std::vector<RetargetedClip> clips = addMotions(asset, options, *progress, warnings);
+  const UprightCharacter upright = standUpright(asset, warnings);
+  options.retarget.turn = upright.turn;
+  const std::vector<RetargetedClip> clips = addMotions(asset, upright.character, options, *progress, warnings);
   const std::vector<ClipEditReport> edits = edit(asset, options, clips, warnings);
   progress->stage("write");
   write(asset, options, clips, warnings);
@@ -247,8 +248,11 @@ void runAnimate(RetargetArguments options) {
   Warnings warnings = asset.warnings;
   std::vector<TemplateMatch> matches;
   const bool rigged = canMove(asset);
+  std::optional<Character> character;
   if (rigged) {
-    options.retarget.turn = standUpright(asset, warnings);
+    UprightCharacter upright = standUpright(asset, warnings);
+    options.retarget.turn = upright.turn;
+    character = std::move(upright.character);
   } else {
     AutoRigOptions rig;
     rig.rigger = options.rigger;
@@ -259,10 +263,11 @@ void runAnimate(RetargetArguments options) {
     if (report.isAbstained) refuseAbstained(asset, report);
     warnings = std::move(report.warnings);
     matches = std::move(report.matches);
+    character.emplace(asset);
   }
   std::vector<RetargetedClip> clips;
   try {
-    clips = addMotions(asset, options, *progress, warnings);
+    clips = addMotions(asset, *character, options, *progress, warnings);
   } catch (const Error& error) {
     if (rigged || error.code() != ErrorCode::kUnsupported) throw;
     throw Error(error.code(), error.message(), error.where(), remedyFor(matches));

@@ -20,6 +20,7 @@
 #include "limber/actions/report_json.h"
 #include "limber/actions/rig/rig_request.h"
 #include "limber/actions/rig/stand_upright.h"
+#include "limber/character/character.h"
 #include "limber/deform/deformer.h"
 #include "limber/document/clip/motion_io.h"
 #include "limber/document/gltf/json_text.h"
@@ -173,7 +174,7 @@ Transform turnedBy(const Transform& rest, const std::string& joint, const Double
 // A document of limber's, as Python holds it.
 class Model {
  public:
-  explicit Model(Asset asset) : asset_(std::move(asset)) {}
+  explicit Model(Asset asset) : character_(std::move(asset)) {}
 
   static Model read(const std::filesystem::path& path) {
     const py::gil_scoped_release release;
@@ -207,26 +208,26 @@ class Model {
   }
 
   void write(const std::filesystem::path& path) const {
-    const Asset asset = asset_.clone();
+    const Character character = character_;  // another thread may change the model meanwhile
     const py::gil_scoped_release release;
-    writeAsset(asset, path);
+    writeAsset(character.document(), path);
   }
   py::bytes glb() const {
-    const Bytes bytes = writeGlb(asset_);
+    const Bytes bytes = writeGlb(document());
     return py::bytes(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   }
-  Model clone() const { return Model(asset_.clone()); }
+  Model clone() const { return *this; }
 
-  const std::string& name() const { return asset_.name; }
+  const std::string& name() const { return document().name; }
   std::vector<std::string> warnings() const {
     std::vector<std::string> lines;
-    for (const Warning& warning : asset_.warnings.items()) lines.push_back(warningText(warning));
+    for (const Warning& warning : document().warnings.items()) lines.push_back(warningText(warning));
     return lines;
   }
-  bool isRigged() const { return hasRig(asset_); }
+  bool isRigged() const { return character_.hasRig(); }
 
-  py::array_t<float> vertices() const { return arrayOf<float>(std::move(collectGeometry(asset_).positions), 3); }
-  py::array_t<Index> faces() const { return arrayOf<Index>(std::move(collectGeometry(asset_).triangles), 3); }
+  py::array_t<float> vertices() const { return arrayOf<float>(std::vector(character_.surface().positions), 3); }
+  py::array_t<Index> faces() const { return arrayOf<Index>(std::vector(character_.surface().triangles), 3); }
 
   std::vector<std::string> jointNames() const {
     std::vector<std::string> names;
@@ -241,7 +242,8 @@ class Model {
   }
   py::array_t<double> jointPositions() const { return arrayOf<double>(restPositions(skeleton().skeleton), 3); }
   std::pair<py::array_t<Index>, py::array_t<float>> weights() const {
-    SkinWeights skin = readWeights(asset_, collectGeometry(asset_), skeleton());
+    checkIsRigged();
+    SkinWeights skin = character_.weights();
     const auto slots = static_cast<py::ssize_t>(skin.slots);
     return {arrayOf<Index>(std::move(skin.joints), slots), arrayOf<float>(std::move(skin.weights), slots)};
   }
@@ -249,10 +251,10 @@ class Model {
   py::object rig(const RigRequest& request, const AutoRigOptions& options, const py::object& listener) {
     PythonProgress progress(listener);
     AutoRigReport report;
-    Asset rigged = asset_.clone();  // so that other calls meanwhile, and what goes wrong, find the document as it was
+    Asset rigged = document().clone();  // other calls meanwhile, and what goes wrong, find the document as it was
     progress.run([&](Progress& told) { report = autoRig(rigged, options, told); });
     finishRig(rigged, request, report);
-    asset_ = std::move(rigged);
+    character_ = Character(std::move(rigged));
     return pythonOf(toJson(report));
   }
 
@@ -280,28 +282,32 @@ class Model {
       joint.rest.translation -= Vec3(positions.at(parent, 0), positions.at(parent, 1), positions.at(parent, 2));
     }
     checkSkeleton(made);
-    const Geometry geometry = collectGeometry(asset_);
+    const Geometry& geometry = character_.surface();
     const SkinWeights skin =
         weightsFrom(joints, weights, static_cast<py::ssize_t>(geometry.positions.size()), made.jointCount());
-    Asset rigged = asset_.clone();  // a failure leaves the document as it was
+    Asset rigged = document().clone();  // a failure leaves the document as it was
     attachRig(rigged, geometry, made, skin);
-    asset_ = std::move(rigged);
+    character_ = Character(std::move(rigged));
   }
   void setWeights(const py::object& given, const Floats& weights) {
     const Indices joints = wholeNumbers(given, "joints");
-    const AssetSkeleton own = skeleton();
-    const Geometry geometry = collectGeometry(asset_);
+    const AssetSkeleton& own = skeleton();
+    const Geometry& geometry = character_.surface();
     const SkinWeights skin =
         weightsFrom(joints, weights, static_cast<py::ssize_t>(geometry.positions.size()), own.skeleton.jointCount());
-    Asset reweighted = asset_.clone();
+    Asset reweighted = document().clone();
     replaceWeights(reweighted, geometry, own, skin);
-    asset_ = std::move(reweighted);
+    character_ = Character(std::move(reweighted));
   }
-  void removeRig() { limber::removeRig(asset_); }
+  void removeRig() {
+    Asset bare = document().clone();
+    limber::removeRig(bare);
+    character_ = Character(std::move(bare));
+  }
 
   py::array_t<float> posed(const std::map<std::string, Doubles>& turns, const std::string& deformer) const {
-    const AssetSkeleton own = skeleton();
-    const Asset asset = asset_.clone();  // another thread may change the model meanwhile
+    const AssetSkeleton& own = skeleton();
+    const Character character = character_;  // another thread may change the model meanwhile
     Pose pose = restPose(own.skeleton);
     for (const auto& [joint, turn] : turns) {
       const std::optional<Index> j = own.skeleton.find(joint);
@@ -311,21 +317,22 @@ class Model {
     std::vector<Vec3f> positions;
     {
       const py::gil_scoped_release release;
-      positions = std::move(posedGeometry(asset, own, pose, findDeformer(deformer)).geometry.positions);
+      positions = std::move(posedGeometry(character.document(), own, pose, findDeformer(deformer)).geometry.positions);
     }
     return arrayOf<float>(std::move(positions), 3);
   }
 
   py::list retarget(const std::filesystem::path& motion, RetargetAssetOptions options) {
     std::vector<RetargetedClip> clips;
-    Asset moving = asset_.clone();
+    Asset moving = document().clone();
     {
       const py::gil_scoped_release release;
       const Motion read = readMotion(motion);
-      options.turn = standUpright(moving, moving.warnings);
-      clips = retargetOnto(moving, read, options);
+      const UprightCharacter upright = standUpright(moving, moving.warnings);
+      options.turn = upright.turn;
+      clips = retargetOnto(moving, upright.character, read, options);
     }
-    asset_ = std::move(moving);
+    character_ = Character(std::move(moving));
     py::list added;
     for (const RetargetedClip& clip : clips) {
       py::dict one;
@@ -339,21 +346,25 @@ class Model {
 
   py::object quality() const {
     ModelQuality measured;
-    const Asset asset = asset_.clone();
+    const Character character = character_;
     {
       const py::gil_scoped_release release;
-      measured = measureModel(asset);
+      measured = measureModel(character.document());
     }
     return pythonOf(toJson(measured));
   }
 
  private:
-  AssetSkeleton skeleton() const {
+  const Asset& document() const { return character_.document(); }
+  void checkIsRigged() const {
     if (!isRigged()) throw Error(ErrorCode::kUnsupported, "the model has no rig", name(), "make one with rig()");
-    return readSkeleton(asset_);
+  }
+  const AssetSkeleton& skeleton() const {
+    checkIsRigged();
+    return character_.binding();
   }
 
-  Asset asset_;
+  Character character_;  // replaced by each change, so that whoever has a copy keeps it as it was
 };
 
 std::vector<JointPin> pinsFrom(const std::map<std::string, Doubles>& given) {

@@ -40,7 +40,7 @@ class ShadingNormals {
     }
     constexpr std::size_t kMostKept = 4;
     if (kept_.size() == kMostKept) kept_.erase(kept_.begin());
-    kept_.push_back({rig, limber::exportMesh(*rig->asset, *rig->geometry).normals});
+    kept_.push_back({rig, limber::exportMesh(rig->asset(), rig->geometry()).normals});
     return kept_.back().normals;
   }
 

@@ -54,7 +54,7 @@ inline Bytes weightsArray(const SkinWeights& weights) {
 // The surface as bound, and what it looks like. The account says where in the bytes each array is: all of 4 byte
 // elements first, then joints, then the textures' files.
 inline CallResult surfaceOf(const RiggedModel& rig) {
-  const ExportMesh mesh = exportMesh(*rig.asset, *rig.geometry);
+  const ExportMesh mesh = exportMesh(rig.asset(), rig.geometry());
   CallResult result{true, {}, {}};
   Json arrays = Json::object();
   const auto add = [&](const char* name, const Bytes& bytes) {

@@ -18,11 +18,13 @@ int main(int argc, char** argv) {
     limber::RetargetAssetOptions options;
     options.method = "limb-ik";  // of retargetMethods()
     limber::Warnings warnings;
-    options.turn = limber::standUpright(character, warnings);  // a character that lies in its file
+    const limber::UprightCharacter upright = limber::standUpright(character, warnings);
+    options.turn = upright.turn;  // of a character that lies in its file
     std::size_t failed = 0;
     for (const std::filesystem::path& file : motions) {
       try {
-        for (const limber::RetargetedClip& clip : limber::retargetOnto(character, limber::readMotion(file), options)) {
+        for (const limber::RetargetedClip& clip :
+             limber::retargetOnto(character, upright.character, limber::readMotion(file), options)) {
           std::printf("%s: %u frames, %zu joints follow\n", clip.name.c_str(), clip.frames, clip.map.matches.size());
         }
       } catch (const limber::Error& error) {  // one that does not fit is left out

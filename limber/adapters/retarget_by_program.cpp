@@ -41,12 +41,11 @@ Skeleton turnedSkeleton(const Skeleton& skeleton, const Quat& turn) {
 
 }  // namespace
 
-ProgramClips retargetByProgram(Asset& asset, const Motion& given, const Adapter& adapter,
+ProgramClips retargetByProgram(Asset& asset, const Character& character, const Motion& given, const Adapter& adapter,
                                const RetargetAssetOptions& options, Progress& progress) {
   checkCanRetarget(asset, given, adapter);
   const Motion motion = standing(motionOfBody(given, options.body));
-  const AssetSkeleton character = animatedSkeleton(asset);
-  const PlainSkeleton plain(character.skeleton);
+  const PlainSkeleton plain(character.skeleton());
   const Skeleton handed = plainlyNamed(turnedSkeleton(plain.skeleton(), options.turn));
   ProgramClips made;
   std::vector<Clip> clips;
@@ -61,11 +60,11 @@ ProgramClips retargetByProgram(Asset& asset, const Motion& given, const Adapter&
     const ProgramOutput output = runProgram(adapter, {motionFile, skeletonFile}, progress);
     ReturnedMotion returned = readReturnedMotion(output, adapter, handed, frames);
     const std::string& name = motion.clips.size() == 1 ? motion.name : clip.name;
-    clips.push_back(clipOf(character.skeleton, plain.original(std::move(returned.frames)), name));
+    clips.push_back(clipOf(character.skeleton(), plain.original(std::move(returned.frames)), name));
     made.clips.push_back({name, frames.count, frames.framesPerSecond, {}, {}, {}});
     made.warnings.append(returned.warnings);
   }
-  const std::vector<std::string> written = addClips(asset, character, clips);
+  const std::vector<std::string> written = addClips(asset, character.moving(), clips);
   for (std::size_t c = 0; c < written.size(); ++c) made.clips[c].name = written[c];
   return made;
 }

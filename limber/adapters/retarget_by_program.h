@@ -5,6 +5,7 @@
 
 #include "limber/actions/motion/retarget_asset.h"
 #include "limber/adapters/adapter.h"
+#include "limber/character/character.h"
 #include "limber/core/progress.h"
 #include "limber/skeleton/motion.h"
 
@@ -20,7 +21,7 @@ struct ProgramClips {
 // motion that lies in rest pose is handed over standing. Of the options count `frameRate` and `turn`. Throws as
 // retargetOnto does where the document cannot move or the motion has no clip, and as runProgram and readReturnedMotion;
 // the document is then as it was.
-ProgramClips retargetByProgram(Asset& asset, const Motion& motion, const Adapter& adapter,
+ProgramClips retargetByProgram(Asset& asset, const Character& character, const Motion& motion, const Adapter& adapter,
                                const RetargetAssetOptions& options, Progress& progress);
 
 }  // namespace limber

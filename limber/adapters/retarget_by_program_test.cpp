@@ -118,7 +118,7 @@ class RetargetByProgram : public ::testing::Test {
   static ProgramClips retarget(Asset& asset, const Motion& motion, const Adapter& adapter,
                                const RetargetAssetOptions& options = {}) {
     Progress progress;
-    return retargetByProgram(asset, motion, adapter, options, progress);
+    return retargetByProgram(asset, Character(asset), motion, adapter, options, progress);
   }
 
   // Copies a prepared file to where the output is expected.
@@ -189,7 +189,7 @@ TEST_F(RetargetByProgram, ThatIsWhatLimbersOwnCopyGives) {
   retarget(byProgram, puppetMotion(puppet()), retargetAdapter("cp \"$1\" \"$2\""));
   RetargetAssetOptions options;
   options.method = "copy";
-  retargetOnto(byLimber, puppetMotion(puppet()), options);
+  retargetOnto(byLimber, Character(byLimber), puppetMotion(puppet()), options);
   const Skeleton skeleton = animatedSkeleton(byLimber).skeleton;
   PoseSequence own = posesIn(byLimber), programs = posesIn(byProgram);
   // Limber's takes rotations alone below the root.

@@ -8,6 +8,7 @@
 
 #include "limber/adapters/rignet_text.h"
 #include "limber/adapters/space_check.h"
+#include "limber/character/character.h"
 #include "limber/core/counted.h"
 #include "limber/core/known_error.h"
 #include "limber/core/parallel.h"
@@ -43,14 +44,12 @@ RigWithSurface rigOfText(const ProgramOutput& output, const HandedModel& handed)
 }
 
 RigWithSurface rigOfDocument(const ProgramOutput& output) {
-  const Asset asset = readAsset(ByteSpan(output.bytes), output.name);
-  if (!hasRig(asset)) throw Error(ErrorCode::kBadData, "has no skeleton with a skin", output.name);
-  const Geometry geometry = collectGeometry(asset);
-  const AssetSkeleton skeleton = readSkeleton(asset);
+  const Character character(readAsset(ByteSpan(output.bytes), output.name));
+  if (!character.hasRig()) throw Error(ErrorCode::kBadData, "has no skeleton with a skin", output.name);
   RigWithSurface rig;
-  rig.skeleton = skeleton.skeleton;
-  rig.weights = readWeights(asset, geometry, skeleton);
-  rig.surface = {geometry.positions, geometry.triangles};
+  rig.skeleton = character.binding().skeleton;
+  rig.weights = character.weights();
+  rig.surface = {character.surface().positions, character.surface().triangles};
   return rig;
 }
 

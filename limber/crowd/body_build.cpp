@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "limber/character/anatomy/body_part.h"
+#include "limber/character/character.h"
 #include "limber/core/random.h"
 #include "limber/document/rig/rest_pose.h"
 #include "limber/document/rig/rig_io.h"
@@ -67,8 +68,9 @@ std::vector<std::optional<Vec3>> boneDirections(const Skeleton& skeleton) {
   return directions;
 }
 
-std::vector<Mat3> stretchesFor(const Skeleton& skeleton, const BodyBuild& build) {
-  const Anatomy anatomy = readAnatomy(skeleton);
+std::vector<Mat3> stretchesFor(const Character& character, const BodyBuild& build) {
+  const Skeleton& skeleton = character.skeleton();
+  const Anatomy& anatomy = character.anatomy();
   const std::vector<std::optional<Vec3>> directions = boneDirections(skeleton);
   std::vector<Mat3> stretches;
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
@@ -88,9 +90,9 @@ std::vector<Mat3> stretchesFor(const Skeleton& skeleton, const BodyBuild& build)
   return stretches;
 }
 
-double lowestOf(const Asset& asset) {
+double lowestOf(const Character& character) {
   double lowest = std::numeric_limits<double>::infinity();
-  for (const Vec3f& position : collectGeometry(asset).positions) {
+  for (const Vec3f& position : character.surface().positions) {
     lowest = std::min(lowest, static_cast<double>(position.y()));
   }
   return lowest;
@@ -122,27 +124,29 @@ BodyBuild randomBuild(std::uint64_t seed, double variety) {
 void changeBuild(Asset& asset, const BodyBuild& build) {
   checkBuild(build);
   removeChannels(asset, [](Index, std::string_view) { return true; });
-  const double lowest = lowestOf(asset);
+  const Character given(asset);
+  const double lowest = lowestOf(given);
   const Warnings before = asset.warnings;
-  const AssetSkeleton character = readSkeleton(asset);
-  const std::vector<Mat3> stretches = stretchesFor(character.skeleton, build);
-  Pose pose = restPose(character.skeleton);
-  for (Index j = 0; j < character.skeleton.jointCount(); ++j) {
+  const Skeleton& skeleton = given.binding().skeleton;
+  const std::vector<Mat3> stretches = stretchesFor(given, build);
+  Pose pose = restPose(skeleton);
+  for (Index j = 0; j < skeleton.jointCount(); ++j) {
     Vec3& offset = pose.locals[j].translation;
-    if (const std::optional<Index> parent = character.skeleton.joints[j].parent) {
+    if (const std::optional<Index> parent = skeleton.joints[j].parent) {
       offset = stretches[*parent] * offset;
     } else {
       offset *= build.height;
     }
   }
-  setRestPose(asset, character, pose, stretches);
-  const double lift = lowest - lowestOf(asset);
-  const AssetSkeleton built = readSkeleton(asset);
-  Pose lifted = restPose(built.skeleton);
-  for (Index j = 0; j < built.skeleton.jointCount(); ++j) {
-    if (!built.skeleton.joints[j].parent) lifted.locals[j].translation.y() += lift;
+  setRestPose(asset, given.binding(), pose, stretches);
+  const Character built(asset);
+  const double lift = lowest - lowestOf(built);
+  const Skeleton& grown = built.binding().skeleton;
+  Pose lifted = restPose(grown);
+  for (Index j = 0; j < grown.jointCount(); ++j) {
+    if (!grown.joints[j].parent) lifted.locals[j].translation.y() += lift;
   }
-  setRestPose(asset, built, lifted);
+  setRestPose(asset, built.binding(), lifted);
   asset.warnings = before;  // that surfaces are shared by joints is no loss: there are no clips
 }
 

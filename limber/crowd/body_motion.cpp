@@ -38,14 +38,14 @@ struct StandingBody {
   Box box;  // of its surface
 };
 
-StandingBody standingBody(const Asset& still, const Skeleton& skeleton, const Quat& turn) {
+StandingBody standingBody(const Geometry& still, const Skeleton& skeleton, const Quat& turn) {
   StandingBody body{skeleton, {}};
   for (Joint& joint : body.skeleton.joints) {
     if (joint.parent) continue;
     joint.rest.translation = turn * joint.rest.translation;
     joint.rest.rotation = turn * joint.rest.rotation;
   }
-  for (const Vec3f& position : collectGeometry(still).positions) body.box.add(turn * position.cast<double>());
+  for (const Vec3f& position : still.positions) body.box.add(turn * position.cast<double>());
   return body;
 }
 
@@ -72,24 +72,25 @@ BodyMotion moveBuild(const Asset& character, const BodyBuild& build, std::span<c
     }
     Warnings warnings = asset.warnings;
     RetargetAssetOptions retarget = options.retarget;
-    retarget.turn = standUpright(asset, warnings);
+    retarget.turn = standUpright(asset, warnings).turn;
     retarget.matches = &matches;
     retarget.frameRate = options.framesPerSecond;
     asset.warnings = warnings;
     changeBuild(asset, build);
     body.still = asset.clone();
+    const Character built(body.still);
     std::vector<std::string> names;
     for (const Motion& motion : motions) {
       try {
-        for (const RetargetedClip& clip : retargetOnto(asset, motion, retarget)) names.push_back(clip.name);
+        for (const RetargetedClip& clip : retargetOnto(asset, built, motion, retarget)) names.push_back(clip.name);
       } catch (const Error& error) {
         throw error.within(motion.name);
       }
     }
     editClips(asset, names, options.edits);
     Warnings ofKeys;
-    const AssetSkeleton animated = animatedSkeleton(asset);
-    const StandingBody standing = standingBody(body.still, animated.skeleton, retarget.turn);
+    const AssetSkeleton animated = animatedSkeleton(asset);  // clips may have got a root joint
+    const StandingBody standing = standingBody(built.surface(), animated.skeleton, retarget.turn);
     body.width = std::max(standing.box.size().x(), standing.box.size().z());
     for (Clip& clip : readClips(asset, animated, ofKeys)) {
       const Index cycle = std::max<Index>(1, frameCount(clip, options.framesPerSecond) - 1);

@@ -45,7 +45,7 @@ TEST(Crowd, ShowsEachBodyItsClipAtItsOffsetAndPlace) {
     Asset alone = crowd.builds[body.build].clone();
     RetargetAssetOptions retarget;
     retarget.frameRate = options.framesPerSecond;
-    retargetOnto(alone, makeSampleMotion("flap"), retarget);
+    retargetOnto(alone, Character(alone), makeSampleMotion("flap"), retarget);
     for (const double moment : {0.0, 0.5, 1.0}) {
       const double clipMoment = std::fmod(moment + body.offset, crowd.seconds);
       if (clipMoment > crowd.seconds - 1 / options.framesPerSecond) continue;

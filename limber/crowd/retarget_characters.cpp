@@ -94,10 +94,12 @@ class CharactersRun {
       }
       RetargetAssetOptions retarget = job_.retarget;
       retarget.matches = &matches_;
-      retarget.turn = standUpright(character, warnings);
+      const UprightCharacter upright = standUpright(character, warnings);
+      retarget.turn = upright.turn;
       for (std::size_t f = 0; f < filesEach_; ++f) {
         const std::span<const Motion> motions(job_.motions.data() + f, job_.isSeparate ? 1 : job_.motions.size());
-        const bool isWritten = guarded(c, 1, [&] { writeOne(character, motions, retarget, c, f, warnings); });
+        const bool isWritten =
+            guarded(c, 1, [&] { writeOne(character, upright.character, motions, retarget, c, f, warnings); });
         if (isWritten) ++written;
       }
     });
@@ -121,15 +123,15 @@ class CharactersRun {
     return false;
   }
 
-  void writeOne(Asset& character, std::span<const Motion> motions, const RetargetAssetOptions& options, std::size_t c,
-                std::size_t f, Warnings& warnings) const {
+  void writeOne(Asset& character, const Character& reading, std::span<const Motion> motions,
+                const RetargetAssetOptions& options, std::size_t c, std::size_t f, Warnings& warnings) const {
     Asset copy;  // the last file may take the character itself
     const bool isLast = f + 1 == filesEach_;
     if (!isLast) copy = character.clone();
     Asset& asset = isLast ? character : copy;
     std::vector<std::string> clips;
     for (const Motion& motion : motions) {
-      for (const RetargetedClip& clip : retargetOnto(asset, motion, options)) clips.push_back(clip.name);
+      for (const RetargetedClip& clip : retargetOnto(asset, reading, motion, options)) clips.push_back(clip.name);
     }
     editClips(asset, clips, job_.edits);
     warnings.append(asset.warnings);

@@ -64,7 +64,7 @@ TEST(RetargetCharacters, AFaultyOneCostsItselfAlone) {
   EXPECT_FALSE(fs::exists(job.folder / "broken.glb"));
   // As each by itself.
   Asset alone = readAsset(folder.path() / "other.glb");
-  retargetOnto(alone, job.motions[0], {});
+  retargetOnto(alone, Character(alone), job.motions[0], {});
   writeAsset(alone, folder.path() / "alone.glb");
   EXPECT_EQ(readFile(folder.path() / "alone.glb"), readFile(job.folder / "other.glb"));
 }

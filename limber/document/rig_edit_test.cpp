@@ -20,11 +20,11 @@ using testing::translation;
 
 // A character as Blender writes it: an armature with a transform, hips with a chest and an end site, a skinned body
 // beside them, a hat that hangs on the chest, a camera on the hips, clips of the chest and of a lamp that stands by.
-struct Character {
+struct EditedCharacter {
   SceneBuilder scene;
   Index bodyMesh, hatMesh, end, hat, chest, camera, hip, body, armature, lamp, skin;
 
-  Character() {
+  EditedCharacter() {
     bodyMesh = scene.addTetrahedron();
     hatMesh = scene.addTetrahedron(Vec3f::Zero(), 0.5f);
     end = scene.addNode({{"name", "chest_end"}, {"translation", {0, 1, 0}}});
@@ -66,7 +66,7 @@ void expectSamePositions(const Geometry& a, const Geometry& b, float tolerance =
 // --- removeRig ---
 
 TEST(RemoveRig, LeavesTheModelWhereItStood) {
-  Character character;
+  EditedCharacter character;
   Asset asset = character.scene.build();
   const Geometry before = collectGeometry(asset);
   removeRig(asset);
@@ -77,7 +77,7 @@ TEST(RemoveRig, LeavesTheModelWhereItStood) {
 }
 
 TEST(RemoveRig, LeavesAPosedModelInItsBindPose) {
-  Character character;
+  EditedCharacter character;
   character.scene.node(character.chest).rotation = Vec4(0, 0, 1, 0);
   character.scene.node(character.chest).translation = Vec3(3, 3, 3);
   Asset asset = character.scene.build();
@@ -87,7 +87,7 @@ TEST(RemoveRig, LeavesAPosedModelInItsBindPose) {
 }
 
 TEST(RemoveRig, TakesJointsOutThatHoldNothing) {
-  Character character;
+  EditedCharacter character;
   Asset asset = character.scene.build();
   const Affine eyeBefore = readSceneGraph(asset.document).world[character.camera];
   removeRig(asset);
@@ -116,7 +116,7 @@ TEST(RemoveRig, TakesAnArmatureOutThatHeldOnlyJoints) {
 }
 
 TEST(RemoveRig, TakesTheMovementOfJointsOutAndNoOther) {
-  Character character;
+  EditedCharacter character;
   gltf::Animation& both = character.scene.asset().document.animations[1];
   both.name = "swing";
   // A clip that moves both: its channel of the chest goes, and only that sampler.
@@ -190,7 +190,7 @@ TEST(RemoveRig, WithoutASkinDoesNothing) {
 }
 
 TEST(RemoveRig, AccessorsOfTheRigGoAndTheirBytesStay) {
-  Character character;
+  EditedCharacter character;
   Asset asset = character.scene.build();
   const Json before = documentJson(asset);
   const Bytes bytes = asset.buffers[0].bytes;
@@ -207,7 +207,7 @@ TEST(RemoveRig, AccessorsOfTheRigGoAndTheirBytesStay) {
 }
 
 TEST(RemoveRig, AccessorsStayWhereAnUnknownExtensionMayNameThem) {
-  Character character;
+  EditedCharacter character;
   changeExtension(character.scene.primitiveOf(0), "EXT_mesh_manifold") = {{"indices", 1}};
   Asset asset = character.scene.build();
   const Json accessors = documentJson(asset)["accessors"];
@@ -262,7 +262,7 @@ SkinWeights evenWeights(std::size_t vertices, std::initializer_list<Index> joint
 }
 
 TEST(ReplaceWeights, KeepsJointsSkinsAndClips) {
-  Character character;
+  EditedCharacter character;
   Asset asset = character.scene.build();
   const Json before = documentJson(asset);
   const Geometry geometry = collectGeometry(asset);
@@ -282,7 +282,7 @@ TEST(ReplaceWeights, KeepsJointsSkinsAndClips) {
 }
 
 TEST(ReplaceWeights, APartThatHungOnAJointBendsFromNowOn) {
-  Character character;
+  EditedCharacter character;
   Asset asset = character.scene.build();
   const Geometry before = collectGeometry(asset);
   replaceWeights(asset, before, readSkeleton(asset), evenWeights(before.positions.size(), {1, 0}));
@@ -356,7 +356,7 @@ TEST(ReplaceWeights, SkeletonsThatShareAMeshGetACommonRoot) {
 }
 
 TEST(ReplaceWeights, MakesInverseBindsWhereThereWereNone) {
-  Character character;
+  EditedCharacter character;
   character.scene.asset().document.skins[0].inverseBindMatrices.reset();
   Asset asset = character.scene.build();
   const Geometry geometry = collectGeometry(asset);
@@ -367,7 +367,7 @@ TEST(ReplaceWeights, MakesInverseBindsWhereThereWereNone) {
 }
 
 TEST(ReplaceWeights, ASkeletonRootThatIsNoneIsLeftOut) {
-  Character character;
+  EditedCharacter character;
   character.scene.asset().document.skins[0].skeleton = character.chest;
   Asset asset = character.scene.build();
   const Geometry geometry = collectGeometry(asset);
@@ -378,7 +378,7 @@ TEST(ReplaceWeights, ASkeletonRootThatIsNoneIsLeftOut) {
 }
 
 TEST(ReplaceWeights, RefusesWhatDoesNotFit) {
-  Character character;
+  EditedCharacter character;
   Asset asset = character.scene.build();
   const Geometry geometry = collectGeometry(asset);
   const AssetSkeleton skeleton = readSkeleton(asset);

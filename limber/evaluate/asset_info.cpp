@@ -5,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "limber/character/character.h"
 #include "limber/document/gltf/accessor.h"
 #include "limber/document/rig/rest_pose.h"
 #include "limber/document/rig/rig_io.h"
@@ -145,10 +146,10 @@ AssetInfo inspectAsset(const Asset& asset) {
   for (const Vec3f& position : geometry.positions) info.bounds.add(position.cast<double>());
   if (!geometry.triangles.empty()) info.surface = inspectSurface(geometry);
   if (!document.skins.empty()) {  // a motion has a skin that no mesh wears
-    const AssetSkeleton skeleton = readSkeleton(asset);
-    for (const Joint& joint : skeleton.skeleton.joints) info.joints.push_back(joint.name);
-    info.anatomy = readAnatomy(skeleton.skeleton);
-    if (hasRig(asset)) info.weights = inspectWeights(readWeights(asset, geometry, skeleton));
+    const Character character(asset);
+    for (const Joint& joint : character.binding().skeleton.joints) info.joints.push_back(joint.name);
+    info.anatomy = SkeletonReading(character.binding().skeleton).anatomy();
+    if (hasRig(asset)) info.weights = inspectWeights(readWeights(asset, geometry, character.binding()));
   }
   return info;
 }

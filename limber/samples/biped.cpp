@@ -1,5 +1,5 @@
 // A person of 1.7 m in A-pose, with stylised hands and boots.
-#include "limber/samples/character.h"
+#include "limber/samples/model_recipe.h"
 
 namespace limber {
 
@@ -61,8 +61,8 @@ void addLeg(Sculpture& s) {
 
 }  // namespace
 
-Character bipedCharacter() {
-  Character c;
+ModelRecipe bipedCharacter() {
+  ModelRecipe c;
   c.name = "biped";
   c.cube = 0.0120;
   c.edge = 0.0190;

@@ -9,7 +9,7 @@
 #include "limber/document/rig/rig_io.h"
 #include "limber/geometry/mesh/prepare.h"
 #include "limber/rigging/weights/weight_method.h"
-#include "limber/samples/character.h"
+#include "limber/samples/model_recipe.h"
 #include "limber/samples/model_builder.h"
 
 namespace limber {

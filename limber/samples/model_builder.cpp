@@ -109,7 +109,7 @@ Asset ModelBuilder::take() {
   return std::move(asset_);
 }
 
-Asset modelOf(const Character& character) {
+Asset modelOf(const ModelRecipe& character) {
   ModelBuilder builder(character.name);
   std::vector<Index> materials;
   for (const SampleMaterial& material : character.materials) materials.push_back(builder.addMaterial(material));

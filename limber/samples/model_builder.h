@@ -7,7 +7,7 @@
 
 #include "limber/core/transform.h"
 #include "limber/document/asset.h"
-#include "limber/samples/character.h"
+#include "limber/samples/model_recipe.h"
 
 namespace limber {
 
@@ -29,6 +29,6 @@ class ModelBuilder {
 };
 
 // The character as a document of one mesh.
-Asset modelOf(const Character& character);
+Asset modelOf(const ModelRecipe& character);
 
 }  // namespace limber

@@ -1,5 +1,5 @@
 // A young fox, 0.62 m high at the ears, with a bushy tail.
-#include "limber/samples/character.h"
+#include "limber/samples/model_recipe.h"
 
 namespace limber {
 
@@ -46,8 +46,8 @@ void addHindLeg(Sculpture& s) {
 
 }  // namespace
 
-Character quadrupedCharacter() {
-  Character c;
+ModelRecipe quadrupedCharacter() {
+  ModelRecipe c;
   c.name = "quadruped";
   c.cube = 0.0085;
   c.edge = 0.0135;

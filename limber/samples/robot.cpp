@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "limber/samples/character.h"
+#include "limber/samples/model_recipe.h"
 #include "limber/samples/model_builder.h"
 
 namespace limber {
@@ -19,16 +19,16 @@ constexpr std::array<SampleMaterial, 4> kMaterials = {{{"shell", {236, 238, 240}
                                                        {"light", {96, 214, 232}, 0.3}}};
 
 // A part in its own space: it hangs down from its joint at the origin, and is symmetric in x.
-Character part(std::string_view name, double edge) {
-  Character c;
+ModelRecipe part(std::string_view name, double edge) {
+  ModelRecipe c;
   c.name = name;
   c.edge = edge;
   c.cube = 0.6 * edge;
   return c;
 }
 
-Character torso() {
-  Character c = part("torso", 0.022);
+ModelRecipe torso() {
+  ModelRecipe c = part("torso", 0.022);
   c.shape.add(ellipsoid({0, 0.13, 0}, {0.175, 0.200, 0.140}), 0.02);
   c.shape.add(ellipsoid({0, 0.23, 0}, {0.180, 0.120, 0.130}), 0.08);
   c.shape.add(ellipsoid({0, -0.03, 0}, {0.120, 0.070, 0.100}), 0.04);  // pelvis
@@ -38,8 +38,8 @@ Character torso() {
   return c;
 }
 
-Character head() {
-  Character c = part("head", 0.020);
+ModelRecipe head() {
+  ModelRecipe c = part("head", 0.020);
   c.shape.add(ellipsoid({0, 0.13, 0.010}, {0.165, 0.120, 0.135}), 0.02);
   c.shape.add(ellipsoid({0, 0.125, 0.100}, {0.120, 0.075, 0.055}), 0.04);  // visor
   c.shape.add(roundCone({0, 0.235, -0.010}, 0.012, {0, 0.330, -0.030}, 0.009), 0.012);
@@ -54,22 +54,22 @@ Character head() {
 }
 
 // A ball of rubber, 1 m in radius: nodes scale it to the size of each joint.
-Character ball() {
-  Character c = part("joint", 0.34);
+ModelRecipe ball() {
+  ModelRecipe c = part("joint", 0.34);
   c.shape.add(ellipsoid({0, 0, 0}, {1, 1, 1}), 0.02);
   c.paints = {{ellipsoid({0, 0, 0}, {3, 3, 3}), kDark}};
   return c;
 }
 
-Character limb(std::string_view name, double length, double top, double bottom, bool banded) {
-  Character c = part(name, 0.018);
+ModelRecipe limb(std::string_view name, double length, double top, double bottom, bool banded) {
+  ModelRecipe c = part(name, 0.018);
   c.shape.add(roundCone({0, -0.035, 0}, top, {0, -length + 0.030, 0}, bottom), 0.02);
   if (banded) c.paints = {{ellipsoid({0, -length + 0.030, 0}, {0.2, 0.022, 0.2}), kTrim}};
   return c;
 }
 
-Character hand() {
-  Character c = part("hand", 0.012);
+ModelRecipe hand() {
+  ModelRecipe c = part("hand", 0.012);
   c.shape.add(ellipsoid({0, -0.040, 0}, {0.046, 0.042, 0.040}), 0.02);
   c.shape.add(roundCone({0.030, -0.060, 0.012}, 0.018, {0.036, -0.118, 0.014}, 0.014), 0.012);
   c.shape.add(roundCone({0, -0.050, -0.026}, 0.018, {0, -0.110, -0.032}, 0.014), 0.012);
@@ -77,8 +77,8 @@ Character hand() {
   return c;
 }
 
-Character foot() {
-  Character c = part("foot", 0.018);
+ModelRecipe foot() {
+  ModelRecipe c = part("foot", 0.018);
   c.shape.add(ellipsoid({0, -0.050, 0.035}, {0.068, 0.055, 0.105}), 0.02);
   c.shape.cutBelow(-0.085, 0.014);
   c.paints = {{ellipsoid({0, -0.100, 0.03}, {0.3, 0.040, 0.4}), kDark}};
@@ -95,7 +95,7 @@ class RobotBuilder {
     for (const SampleMaterial& material : kMaterials) materials_.push_back(model_.addMaterial(material));
   }
 
-  Index mesh(const Character& character) {
+  Index mesh(const ModelRecipe& character) {
     return model_.addMesh(character.name, buildCharacter(character), materials_);
   }
   Index node(std::string_view name, std::optional<Index> shown, const Transform& placed, std::optional<Index> parent) {

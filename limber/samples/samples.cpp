@@ -4,7 +4,7 @@
 
 #include "limber/core/error.h"
 #include "limber/core/text/names.h"
-#include "limber/samples/character.h"
+#include "limber/samples/model_recipe.h"
 #include "limber/samples/flying.h"
 #include "limber/samples/model_builder.h"
 #include "limber/samples/robot.h"
@@ -13,7 +13,7 @@ namespace limber {
 
 namespace {
 
-template <Character (*recipe)()>
+template <ModelRecipe (*recipe)()>
 Asset makeCharacter() {
   return modelOf(recipe());
 }

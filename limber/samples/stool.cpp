@@ -1,10 +1,10 @@
 // Stools of half a metre: a round seat on four splayed legs, with a ring of rungs and without.
-#include "limber/samples/character.h"
+#include "limber/samples/model_recipe.h"
 
 namespace limber {
 
-Character stoolCharacter() {
-  Character c;
+ModelRecipe stoolCharacter() {
+  ModelRecipe c;
   c.name = "stool";
   c.cube = 0.0080;
   c.edge = 0.0140;
@@ -23,8 +23,8 @@ Character stoolCharacter() {
   return c;
 }
 
-Character footstoolCharacter() {
-  Character c;
+ModelRecipe footstoolCharacter() {
+  ModelRecipe c;
   c.name = "footstool";
   c.cube = 0.0090;
   c.edge = 0.0150;

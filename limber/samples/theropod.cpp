@@ -1,5 +1,5 @@
 // A two-legged dinosaur, 0.95 m high and 1.7 m long: a heavy tail that balances the trunk, small arms.
-#include "limber/samples/character.h"
+#include "limber/samples/model_recipe.h"
 
 namespace limber {
 
@@ -62,8 +62,8 @@ void addTheropodLeg(Sculpture& s) {
 
 }  // namespace
 
-Character theropodCharacter() {
-  Character c;
+ModelRecipe theropodCharacter() {
+  ModelRecipe c;
   c.name = "theropod";
   c.cube = 0.0090;
   c.edge = 0.0190;

@@ -1,5 +1,5 @@
 // A small dragon that stands on four legs with its wings spread.
-#include "limber/samples/character.h"
+#include "limber/samples/model_recipe.h"
 
 namespace limber {
 
@@ -82,8 +82,8 @@ void addWing(Sculpture& s) {
 
 }  // namespace
 
-Character wingedCharacter() {
-  Character c;
+ModelRecipe wingedCharacter() {
+  ModelRecipe c;
   c.name = "winged";
   c.cube = 0.0110;
   c.edge = 0.0230;

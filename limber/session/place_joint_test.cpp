@@ -27,7 +27,7 @@ class PlaceJointTest : public ::testing::Test {
     return pointFromRest(session.state().pose.locals[joint], skeleton().joints[joint].rest).turn;
   }
   Index end(PartKind kind, Side side) const {
-    const Part* part = session.state().rig->anatomy.find(kind, side);
+    const Part* part = session.state().rig->anatomy().find(kind, side);
     return part->end.value_or(part->joints.back());
   }
   const std::string& name(Index joint) const { return skeleton().joints[joint].name; }

@@ -21,7 +21,7 @@ constexpr double kShareOfBone = 1.0 / 6, kLeastShare = 1e-3;
 
 // The document has their names, too, so that a clip is found in what is saved of it.
 void readOwnClips(RiggedModel& model, Asset& document) {
-  std::vector<Clip> clips = readClips(document, model.binding, document.warnings);
+  std::vector<Clip> clips = readClips(document, model.binding(), document.warnings);
   for (std::size_t c = 0; c < clips.size(); ++c) {
     Clip& clip = clips[c];
     if (clip.translations.empty() && clip.rotations.empty() && clip.scales.empty()) continue;
@@ -36,15 +36,12 @@ void readOwnClips(RiggedModel& model, Asset& document) {
   }
 }
 
-// All of the document but its clips; the document itself is yet to be given.
-std::shared_ptr<RiggedModel> readRig(const Asset& document) {
-  auto model = std::make_shared<RiggedModel>();
-  model->geometry = std::make_shared<const Geometry>(collectGeometry(document));
-  model->normals = std::make_shared<const std::vector<Vec3f>>(readNormals(document, *model->geometry));
-  model->binding = readSkeleton(document);
-  model->anatomy = readAnatomy(model->skeleton());
+// All of the document but its clips.
+std::shared_ptr<RiggedModel> readRig(std::shared_ptr<const Asset> document) {
+  auto model = std::make_shared<RiggedModel>(Character(std::move(document)));
+  model->normals = std::make_shared<const std::vector<Vec3f>>(readNormals(model->asset(), model->geometry()));
   model->inverseBind = inverseBindOf(model->skeleton());
-  model->weights = readWeights(document, *model->geometry, model->binding);
+  model->weights = model->character.weights();
   normalizeWeights(model->weights);
   model->home = restPose(model->skeleton());
   model->radii = handleRadii(model->skeleton(), longestSide(*model));
@@ -68,7 +65,7 @@ void completeWeights(SkinWeights& weights, const Geometry& geometry) {
 }
 
 BoundSurface boundSurface(const RiggedModel& model) {
-  return {model.geometry->positions, model.geometry->triangles, model.weights};
+  return {model.geometry().positions, model.geometry().triangles, model.weights};
 }
 
 bool holds(std::span<const std::shared_ptr<const Clip>> clips, const std::shared_ptr<const Clip>& clip) {
@@ -79,23 +76,20 @@ bool holds(std::span<const std::shared_ptr<const Clip>> clips, const std::shared
 
 double longestSide(const RiggedModel& rig) {
   Box box;
-  for (const Vec3f& position : rig.geometry->positions) box.add(position.cast<double>());
+  for (const Vec3f& position : rig.geometry().positions) box.add(position.cast<double>());
   return box.longestSide();
 }
 
 std::shared_ptr<RiggedModel> readRiggedModel(Asset document) {
-  std::shared_ptr<RiggedModel> model = readRig(document);
-  model->asset = std::make_shared<const Asset>(std::move(document));
-  return model;
+  return readRig(std::make_shared<const Asset>(std::move(document)));
 }
 
 std::shared_ptr<const RiggedModel> openRiggedModel(const Asset& source) {
   if (!hasRig(source)) throw Error(ErrorCode::kBadArgument, "the model has no rig", source.name);
-  Asset document = source.clone();
-  joinBindPoses(document);
+  const auto document = std::make_shared<Asset>(source.clone());
+  joinBindPoses(*document);
   std::shared_ptr<RiggedModel> model = readRig(document);
-  readOwnClips(*model, document);
-  model->asset = std::make_shared<const Asset>(std::move(document));
+  readOwnClips(*model, *document);
   return model;
 }
 
@@ -104,11 +98,9 @@ std::shared_ptr<const RiggedModel> renameJoint(const RiggedModel& model, Index j
   const std::optional<Index> known = model.skeleton().find(name);
   if (known && *known != joint) refuseNameTaken("joint", name);
   auto renamed = std::make_shared<RiggedModel>(model);
-  Asset asset = model.asset->clone();
-  asset.document.nodes[model.binding.jointNode[joint]].name = name;
-  renamed->asset = std::make_shared<const Asset>(std::move(asset));
-  renamed->binding.skeleton.joints[joint].name = name;
-  renamed->anatomy = readAnatomy(renamed->skeleton());
+  Asset asset = model.asset().clone();
+  asset.document.nodes[model.binding().jointNode[joint]].name = name;
+  renamed->character = model.character.renamed(std::move(asset));
   renamed->renamed = true;
   return renamed;
 }
@@ -122,30 +114,30 @@ std::shared_ptr<const RiggedModel> withWeights(const RiggedModel& model, SkinWei
 }
 
 Asset documentOf(const RiggedModel& model) {
-  Asset document = model.asset->clone();
+  Asset document = model.asset().clone();
   if (!model.painted) return document;
   SkinWeights weights = model.weights;
-  completeWeights(weights, *model.geometry);
-  replaceWeights(document, *model.geometry, model.binding, weights);
+  completeWeights(weights, model.geometry());
+  replaceWeights(document, model.geometry(), model.binding(), weights);
   return document;
 }
 
 Asset assetWithClips(const RiggedModel& model, const Pose& pose, std::span<const std::shared_ptr<const Clip>> clips) {
   Asset asset = documentOf(model);
-  writeNodePose(asset, model.binding, pose);
+  writeNodePose(asset, model.binding(), pose);
   const bool untouched = std::all_of(model.clips.begin(), model.clips.end(),
                                      [&](const std::shared_ptr<const Clip>& own) { return holds(clips, own); });
   if (!untouched) {
-    settleMovingParents(asset, model.binding);
+    settleMovingParents(asset, model.binding());
     std::vector<bool> moves(asset.document.nodes.size(), false);
-    for (const Index node : model.binding.jointNode) moves[node] = true;
+    for (const Index node : model.binding().jointNode) moves[node] = true;
     removeChannels(asset, [&](Index node, std::string_view path) { return moves[node] && path != "weights"; });
   }
   std::vector<Clip> added;
   for (const std::shared_ptr<const Clip>& clip : clips) {
     if (!untouched || !holds(model.clips, clip)) added.push_back(*clip);
   }
-  addClips(asset, model.binding, added);
+  addClips(asset, model.binding(), added);
   return asset;
 }
 
@@ -155,7 +147,7 @@ std::shared_ptr<const RiggedModel> makeRiggedModel(const Asset& source, const Au
   AutoRigReport report = autoRig(asset, options, progress);
   std::shared_ptr<RiggedModel> model = readRiggedModel(std::move(asset));
   model->report = std::move(report);
-  model->home = readNodePose(*model->asset, model->binding);  // the bind pose but for rounding, and no node changes
+  model->home = readNodePose(model->asset(), model->binding());  // the bind pose but for rounding, and no node changes
   return model;
 }
 
@@ -191,7 +183,7 @@ PosedSurface posedSurface(const RiggedModel& model, const Pose& pose, const Defo
   std::vector<Affine> transforms(model.inverseBind.size());
   skinTransforms(poseGlobals(model.skeleton(), pose), model.inverseBind, transforms);
   const std::vector<Vec3> centers = restPositions(model.skeleton());
-  PosedSurface surface{model.geometry->positions, std::move(normals)};
+  PosedSurface surface{model.geometry().positions, std::move(normals)};
   std::vector<float> scratch(deformer.scratchSize(surface.positions.size(), jointCount));
   const auto prepared = model.preparations->of(deformer, boundSurface(model), jointCount);
   deformer.deform({surface.positions, surface.normals, model.weights, transforms, centers, prepared.get()},

@@ -5,13 +5,13 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "limber/actions/rig/auto_rig.h"
-#include "limber/character/anatomy/anatomy.h"
+#include "limber/character/character.h"
 #include "limber/deform/deform_preparations.h"
 #include "limber/deform/linear_blend.h"
-#include "limber/document/rig/rig_io.h"
 #include "limber/geometry/mesh/tri_mesh.h"
 #include "limber/skeleton/clip/clip.h"
 #include "limber/skeleton/pose.h"
@@ -20,18 +20,17 @@ namespace limber {
 
 struct TransferReport;
 
-// Never changed once made, so that a session's undo steps share it. Copies share the document and the surface: a rig
+// Never changed once made, so that a session's undo steps share it. Copies share the document and its readings: a rig
 // whose weights alone are others costs no more than those.
 struct RiggedModel {
-  std::shared_ptr<const Asset> asset;  // with the rig, its joints' nodes as in the file; see documentOf for its weights
-  AssetSkeleton binding;
-  Anatomy anatomy;                                    // of the skeleton at rest
-  std::vector<Affine> inverseBind;                    // #J
-  std::vector<double> radii;                          // #J metres, of the handles to take hold of; above 0
-  std::shared_ptr<const Geometry> geometry;           // #S vertices in world space, bound
+  explicit RiggedModel(Character read) : character(std::move(read)) {}
+
+  Character character;              // with the rig, its joints' nodes as in the file; see documentOf for its weights
+  std::vector<Affine> inverseBind;  // #J
+  std::vector<double> radii;        // #J metres, of the handles to take hold of; above 0
   std::shared_ptr<const std::vector<Vec3f>> normals;  // #S, zero where the file has none
   SkinWeights weights;                                // #S, each used vertex sums to 1
-  // For `geometry` and `weights`; shared with copies that have the same.
+  // For the surface and `weights`; shared with copies that have the same.
   std::shared_ptr<DeformPreparations> preparations = std::make_shared<DeformPreparations>();
   Pose home;  // as the joints stand in a fresh rig's file; the bind pose of a rig that was there
   std::optional<AutoRigReport> report;             // none for a rig that no rigger made: the file's, another model's
@@ -39,9 +38,13 @@ struct RiggedModel {
   std::vector<std::shared_ptr<const Clip>> clips;  // the file's own that move joints; names unique
   bool renamed = false;                            // joints are not called as they were
   bool edited = false;                             // by hand: weights painted; joints added, deleted, hung elsewhere
-  bool painted = false;                            // `weights` are not those of `asset`
+  bool painted = false;                            // `weights` are not those of the document
 
-  const Skeleton& skeleton() const { return binding.skeleton; }
+  const Asset& asset() const { return character.document(); }
+  const AssetSkeleton& binding() const { return character.binding(); }
+  const Skeleton& skeleton() const { return binding().skeleton; }
+  const Anatomy& anatomy() const { return character.anatomy(); }
+  const Geometry& geometry() const { return character.surface(); }  // #S vertices in world space, bound
 };
 
 // `source` with the rig that it has. Throws Error kBadArgument where it has none.

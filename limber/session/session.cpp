@@ -106,7 +106,7 @@ void applyTasks(SessionState& state, const ApplyTasks& command) {
   }
   IkTaskOptions options;
   options.ik.rootMotion = command.rootMoves ? RootMotion::kTranslate : RootMotion::kFixed;
-  options.masses = bodyMasses(*state.rig->geometry, state.rig->weights, skeleton);
+  options.masses = bodyMasses(state.rig->geometry(), state.rig->weights, skeleton);
   const IkTaskResult result = solveIkTasks(skeleton, state.pose, tasks, state.limits.get(), options);
   followPose(state, [&](const HeldTarget& target) { return isAsked(target.joint); });
   authored(state);
@@ -133,7 +133,7 @@ void applyPose(SessionState& state, const ApplyPose& command) {
 
 void letLimbsFollow(SessionState& state) {
   state.limbsFollow = true;
-  state.ik = hasLimbs(state.rig->anatomy);
+  state.ik = hasLimbs(state.rig->anatomy());
   holdStandingFeet(state);
 }
 
@@ -165,7 +165,7 @@ void adopt(SessionState& state, Asset asset) {
 // The clips are read anew with the model; where they came from is still known.
 void setRestPose(SessionState& state) {
   Asset asset = assetWithClips(*state.rig, state.rig->home, basesOf(state.movement));
-  limber::setRestPose(asset, state.rig->binding, state.pose);
+  limber::setRestPose(asset, state.rig->binding(), state.pose);
   adopt(state, std::move(asset));
   state.pins.clear();
   state.templateName = RigOptions().templateName;
@@ -756,7 +756,7 @@ void Session::commit(const Command& command, SessionState next) {
   std::size_t weights = 0, kept = 0;
   const auto count = [&](const SessionState& of) {
     for (const std::shared_ptr<const RiggedModel>& rig : {of.rig, of.authoredRig}) {
-      documents.insert(rig->asset.get());
+      documents.insert(&rig->asset());
       if (rigs.insert(rig.get()).second) weights += rig->weights.weights.size();
     }
     return documents.size() <= kMostRigs && weights <= kMostWeights;

@@ -32,7 +32,7 @@ Json jointsJson(const RiggedModel& rig) {
   Json joints = Json::array();
   for (Index j = 0; j < rest.size(); ++j) {
     const Joint& joint = rig.skeleton().joints[j];
-    const Part* part = surePart(rig.anatomy, j);
+    const Part* part = surePart(rig.anatomy(), j);
     joints.push_back({{"name", joint.name},
                       {"parent", joint.parent ? static_cast<int>(*joint.parent) : -1},
                       {"part", textOrNull(sureLabel(rig, j))},
@@ -184,25 +184,25 @@ Json snapJson(const RiggedModel& rig) {
 }  // namespace
 
 std::string sureLabel(const RiggedModel& rig, Index joint) {
-  return surePart(rig.anatomy, joint) ? std::string(labelOf(rig.anatomy, joint)) : std::string();
+  return surePart(rig.anatomy(), joint) ? std::string(labelOf(rig.anatomy(), joint)) : std::string();
 }
 
 Json sessionState(const Session& session) {
   const SessionState& state = session.state();
   const RiggedModel& rig = *state.rig;
   Box box;
-  for (const Vec3f& position : rig.geometry->positions) box.add(position.cast<double>());
-  Warnings warnings = rig.report ? rig.report->warnings : rig.asset->warnings;
+  for (const Vec3f& position : rig.geometry().positions) box.add(position.cast<double>());
+  Warnings warnings = rig.report ? rig.report->warnings : rig.asset().warnings;
   warnings.append(state.movement.warnings);
   Json json = {
       {"name", session.source().name},
-      {"vertices", rig.geometry->positions.size()},
-      {"triangles", rig.geometry->triangles.size()},
+      {"vertices", rig.geometry().positions.size()},
+      {"triangles", rig.geometry().triangles.size()},
       {"box", {{"min", vectorJson(box.min)}, {"max", vectorJson(box.max)}}},
       {"own_rig", !rig.report},
       {"rigger", state.rigger},
       {"skinning", state.skinning},
-      {"most_handles", rig.report ? rig.report->weldedVertices : static_cast<Index>(rig.geometry->positions.size())},
+      {"most_handles", rig.report ? rig.report->weldedVertices : static_cast<Index>(rig.geometry().positions.size())},
       {"suggestions", Json::array()},
       {"joints", jointsJson(rig)},
       {"ik", state.ik},

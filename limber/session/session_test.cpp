@@ -117,7 +117,7 @@ TEST(Session, AnotherNumberOfHandlesKeepsThePoseAndComesBackExactly) {
   const std::vector<Vec3f> now = posedPositions(*many.rig, many.pose);
   double moved = 0, left = 0;
   for (std::size_t v = 0; v < surface.size(); ++v) {
-    moved += (surface[v] - many.rig->geometry->positions[v]).norm();
+    moved += (surface[v] - many.rig->geometry().positions[v]).norm();
     left += (surface[v] - now[v]).norm();
   }
   EXPECT_LT(left, 0.4 * moved);
@@ -373,7 +373,7 @@ TEST(Session, PickFindsHandlesBeforeTheSurface) {
 TEST(Session, ExportsThePosedSurface) {
   Session session = opened(8);
   double before = 1e9;
-  for (const Vec3f& position : session.state().rig->geometry->positions)
+  for (const Vec3f& position : session.state().rig->geometry().positions)
     before = std::min(before, double{position.y()});
   run(session, MoveJoint{session.state().rig->skeleton().joints[0].name, {0, 2, 0}});
   const Bytes obj = session.exportModel(ExportFormat::kObj);
@@ -386,7 +386,7 @@ TEST(Session, ExportsThePosedSurface) {
     lowest = std::min(lowest, y);
   }
   EXPECT_NEAR(lowest, before + 2, 1e-5);
-  const std::size_t triangles = session.state().rig->geometry->triangles.size();
+  const std::size_t triangles = session.state().rig->geometry().triangles.size();
   EXPECT_EQ(session.exportModel(ExportFormat::kStl).size(), 84 + 50 * triangles);
   EXPECT_FALSE(session.exportModel(ExportFormat::kPly).empty());
 }

@@ -173,7 +173,7 @@ TEST(SetDeformer, RaysMeetTheSurfaceThatItBends) {
   for (const Deformer& deformer : deformers()) {
     take(session, SetDeformer{std::string(deformer.name)});
     const std::vector<Vec3f> positions = exported(session);
-    const std::vector<Triangle>& triangles = session.state().rig->geometry->triangles;
+    const std::vector<Triangle>& triangles = session.state().rig->geometry().triangles;
     int met = 0;
     for (const double height : {0.2, 0.7, 1.1, 1.5}) {
       const auto hit = session.pickSurface({Vec3(0.03, height, 10), Vec3(0, 0, -1)});
@@ -240,7 +240,7 @@ TEST(SetDeformer, ForksAndRenamedRigsShareWhatIsPrepared) {
 TEST(SetDeformer, NormalsBendAlong) {
   Session session = bentBiped();
   const RiggedModel& rig = *session.state().rig;
-  const std::vector<Vec3f> bound(rig.geometry->positions.size(), Vec3f::UnitY());
+  const std::vector<Vec3f> bound(rig.geometry().positions.size(), Vec3f::UnitY());
   for (const Deformer& deformer : deformers()) {
     const PosedSurface surface = posedSurface(rig, session.state().pose, deformer, bound);
     EXPECT_EQ(surface.positions, posedPositions(rig, session.state().pose, deformer));
@@ -263,7 +263,7 @@ TEST(SetDeformer, EachMemberOfASceneHasItsOwn) {
   const std::vector<Vec3f> all = verticesOf(scene.exportModel(ExportFormat::kObj));
   scene.run(SetDeformer{"linear-blend"}, progress);
   const std::vector<Vec3f> linear = verticesOf(scene.exportModel(ExportFormat::kObj));
-  const std::size_t first = scene.members()[0].session->state().rig->geometry->positions.size();
+  const std::size_t first = scene.members()[0].session->state().rig->geometry().positions.size();
   ASSERT_GT(all.size(), first);
   for (std::size_t v = 0; v < first; ++v) EXPECT_EQ(all[v], linear[v]);
   EXPECT_NE(all, linear);

@@ -156,8 +156,9 @@ class TargetMaker {
         globals_(restGlobals(skeleton_.skeleton)) {}
 
   void make() {
-    const Anatomy anatomy = readAnatomy(skeleton_.skeleton);
-    const std::vector<HumanoidJoint> bones = humanoidJoints(skeleton_.skeleton);
+    const SkeletonReading reading(skeleton_.skeleton);
+    const Anatomy& anatomy = reading.anatomy();
+    const std::vector<HumanoidJoint> bones = humanoidJoints(reading);
     const TargetNames names = targetNames(skeleton_.skeleton, anatomy, bones, target_.boneNames, target_.style);
     std::vector<Quat> turns;
     if (target_.axes != BoneAxes::kAsTheyAre) turns = boneTurns(skeleton_.skeleton, anatomy, bones, target_.axes);

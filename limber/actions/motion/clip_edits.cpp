@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "limber/character/anatomy/body_pieces.h"
+#include "limber/character/character.h"
 #include "limber/core/error.h"
 #include "limber/document/clip/clip_io.h"
 #include "limber/document/clip/motion_io.h"
@@ -35,9 +35,10 @@ Clip looped(const Skeleton& skeleton, const Clip& clip, Index body, ClipEditRepo
 }
 
 // `root`: the joint that takes the travel, if one does.
-Clip edited(const Skeleton& skeleton, Clip clip, std::optional<Index> root, const ClipEdits& edits,
+Clip edited(const SkeletonReading& reading, Clip clip, std::optional<Index> root, const ClipEdits& edits,
             ClipEditReport& report) {
-  const Index body = bodyJoint(skeleton);
+  const Skeleton& skeleton = reading.skeleton();
+  const Index body = bodyJoint(reading);
   if (edits.loop) clip = looped(skeleton, clip, body, report);
   if (edits.inPlace || root) {
     RootMotionOptions options;
@@ -63,34 +64,31 @@ void renumberJoints(Clip& clip, const std::vector<Index>& number) {
   renumber(clip.scales);
 }
 
-struct RootedSkeleton {
-  AssetSkeleton skeleton;
+struct RootedCharacter {
+  Character character;
   std::optional<Index> root;
 };
 
-void tellOfFollowers(Asset& asset, const AssetSkeleton& skeleton, Index root) {
-  if (!hasRig(asset)) return;
-  const SkinWeights weights = readWeights(asset, collectGeometry(asset), skeleton);
+void tellOfFollowers(Asset& asset, const Character& character, Index root) {
+  if (!character.hasRig()) return;
+  const SkinWeights& weights = character.weights();
   std::size_t followers = 0;
   for (std::size_t i = 0; i < weights.weights.size(); ++i) {
     if (weights.joints[i] == root && weights.weights[i] > 0) ++followers;
   }
   asset.warnings.add("root-weights", "vertices follow the root joint in part, and its travel likewise",
-                     skeleton.skeleton.joints[root].name, followers);
+                     character.skeleton().joints[root].name, followers);
 }
 
 // With the root joint that is asked for.
-RootedSkeleton withRootJoint(Asset& asset, const ClipEdits& edits) {
-  RootedSkeleton result{animatedSkeleton(asset), std::nullopt};
-  if (!edits.rootJoint) return result;
-  result.root = findRootJoint(asset, result.skeleton);
-  if (result.root) {
-    tellOfFollowers(asset, result.skeleton, *result.root);
-    return result;
+RootedCharacter withRootJoint(Asset& asset, const Character& character, const ClipEdits& edits) {
+  if (!edits.rootJoint) return {character, std::nullopt};
+  if (const std::optional<Index> root = findRootJoint(asset, character.moving())) {
+    tellOfFollowers(asset, character, *root);
+    return {character, root};
   }
-  result.skeleton = addRootJoint(asset, *edits.rootJoint);
-  result.root = 0;
-  return result;
+  addRootJoint(asset, *edits.rootJoint);
+  return {Character(asset), 0};
 }
 
 // Takes the animations of joints out; what else they move stays in them.
@@ -103,16 +101,15 @@ void removeJointChannels(Asset& asset, const AssetSkeleton& skeleton, std::span<
   }
 }
 
-CarriedPoints carriedBy(const Asset& asset, const AssetSkeleton& skeleton) {
-  if (!hasRig(asset)) return carriedPoints(skeleton.skeleton, {}, {});
-  const Geometry geometry = collectGeometry(asset);
-  return carriedPoints(skeleton.skeleton, geometry.positions, readWeights(asset, geometry, skeleton));
+CarriedPoints carriedBy(const Character& character) {
+  if (!character.hasRig()) return carriedPoints(character.skeleton(), {}, {});
+  return carriedPoints(character.skeleton(), character.surface().positions, character.weights());
 }
 
 }  // namespace
 
-Index bodyJoint(const Skeleton& skeleton) {
-  return skeleton.joints.empty() ? 0 : BodyPieces(skeleton).pelvis.value_or(0);
+Index bodyJoint(const SkeletonReading& skeleton) {
+  return skeleton.skeleton().joints.empty() ? 0 : skeleton.pieces().pelvis.value_or(0);
 }
 
 std::vector<ClipEditReport> editClips(Asset& asset, std::span<const std::string> names, const ClipEdits& edits) {
@@ -129,20 +126,22 @@ std::vector<ClipEditReport> editClips(Asset& asset, std::span<const std::string>
     animations.push_back(static_cast<Index>(found - all.begin()));
   }
   const BufferViewSweep views(asset);
-  settleMovingParents(asset, animatedSkeleton(asset), animations);
-  const RootedSkeleton rooted = withRootJoint(asset, edits);
+  const Character given(asset);
+  settleMovingParents(asset, given.moving(), animations);
+  const RootedCharacter rooted = withRootJoint(asset, given, edits);
+  const AssetSkeleton& moving = rooted.character.moving();
   const AccessorSweep accessors(asset);  // after that: accessors have other numbers then
   std::vector<Clip> clips;
   {
-    const std::vector<Clip> all = readClips(asset, rooted.skeleton, asset.warnings);
+    const std::vector<Clip> all = readClips(asset, moving, asset.warnings);
     for (const Index a : animations) clips.push_back(all[a]);
   }
-  const Skeleton& skeleton = rooted.skeleton.skeleton;
-  const CarriedPoints carried = edits.tolerance ? carriedBy(asset, rooted.skeleton) : CarriedPoints();
+  const Skeleton& skeleton = moving.skeleton;
+  const CarriedPoints carried = edits.tolerance ? carriedBy(rooted.character) : CarriedPoints();
   for (Clip& clip : clips) {
     ClipEditReport report;
     report.clip = clip.name;
-    clip = edited(skeleton, std::move(clip), rooted.root, edits, report);
+    clip = edited(rooted.character.reading(), std::move(clip), rooted.root, edits, report);
     if (edits.tolerance) {
       ReducedClip reduced = reduceKeys(skeleton, clip, carried, {*edits.tolerance, true});
       report.keysBefore = reduced.keysBefore;
@@ -152,12 +151,12 @@ std::vector<ClipEditReport> editClips(Asset& asset, std::span<const std::string>
     }
     reports.push_back(std::move(report));
   }
-  removeJointChannels(asset, rooted.skeleton, animations);
+  removeJointChannels(asset, moving, animations);
   for (std::size_t c = 0; c < clips.size(); ++c) {
     const std::optional<ClipLoop>& loop = reports[c].loop;
     if (loop) loopAnimation(asset, asset.document.animations[animations[c]], {loop->begin, loop->end});
   }
-  addClips(asset, rooted.skeleton, clips, {edits.tolerance.has_value()});
+  addClips(asset, moving, clips, {edits.tolerance.has_value()});
   moveLastAnimations(asset.document, animations);
   accessors.sweep(asset);
   views.sweep(asset);
@@ -172,18 +171,19 @@ std::vector<ClipEditReport> editClips(Motion& motion, const ClipEdits& edits) {
     still.clips.clear();
     still.warnings = {};
     Asset asset = motionAsset(still);
-    RootedSkeleton rooted = withRootJoint(asset, edits);
+    const RootedCharacter rooted = withRootJoint(asset, Character(asset), edits);
     motion.warnings.append(asset.warnings);
     std::vector<Index> number;
-    for (const Joint& joint : motion.skeleton.joints) number.push_back(*rooted.skeleton.skeleton.find(joint.name));
+    for (const Joint& joint : motion.skeleton.joints) number.push_back(*rooted.character.skeleton().find(joint.name));
     for (Clip& clip : motion.clips) renumberJoints(clip, number);
-    motion.skeleton = std::move(rooted.skeleton.skeleton);
+    motion.skeleton = rooted.character.skeleton();
     root = rooted.root;
   }
+  const SkeletonReading reading(motion.skeleton);
   for (Clip& clip : motion.clips) {
     ClipEditReport report;
     report.clip = clip.name;
-    clip = edited(motion.skeleton, std::move(clip), root, edits, report);
+    clip = edited(reading, std::move(clip), root, edits, report);
     reports.push_back(std::move(report));
   }
   if (edits.frameRate) motion.framesPerSecond = *edits.frameRate;

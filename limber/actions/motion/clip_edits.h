@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "limber/character/anatomy/skeleton_reading.h"
 #include "limber/document/asset.h"
 #include "limber/skeleton/clip/clip_edit.h"
 #include "limber/skeleton/motion.h"
@@ -34,7 +35,7 @@ struct ClipEditReport {
 };
 
 // The joint whose travel is the body's: the pelvis by its anatomy, else the first.
-Index bodyJoint(const Skeleton& skeleton);
+Index bodyJoint(const SkeletonReading& skeleton);
 
 // Edits the animations of these names; all others stay as they are, and so does what else theirs move (weights of blend
 // shapes, other nodes), but that it is cut to a loop, too, with the weights joined (loopAnimation). With `rootJoint`

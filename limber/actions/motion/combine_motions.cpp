@@ -47,13 +47,13 @@ std::vector<ClipWithContacts> combined(const Skeleton& skeleton, const std::vect
 
 }  // namespace
 
-std::vector<RetargetedClip> combineOnto(Asset& asset, std::span<const Motion> motions,
+std::vector<RetargetedClip> combineOnto(Asset& asset, const Character& character, std::span<const Motion> motions,
                                         const RetargetAssetOptions& options, const CombineOptions& combine) {
   std::vector<ClipWithContacts> clips;
   std::optional<RetargetedClip> first;
   for (const Motion& motion : motions) {
     try {
-      CharacterClips onto = retargetedClips(asset, motion, options, true);
+      CharacterClips onto = retargetedClips(character, motion, options, true, asset.warnings);
       if (!first) first = onto.reports.front();
       for (ClipWithContacts& clip : onto.clips) clips.push_back(std::move(clip));
     } catch (const Error& error) {
@@ -61,16 +61,15 @@ std::vector<RetargetedClip> combineOnto(Asset& asset, std::span<const Motion> mo
     }
   }
   checkCount(clips.size(), !combine.blendWeights.empty());
-  const AssetSkeleton character = animatedSkeleton(asset);
   std::vector<Clip> added;
   std::vector<RetargetedClip> reports;
-  for (ClipWithContacts& one : combined(character.skeleton, clips, combine, asset.warnings)) {
+  for (ClipWithContacts& one : combined(character.skeleton(), clips, combine, asset.warnings)) {
     RetargetedClip& report = reports.emplace_back(*first);
     report.framesPerSecond = frameRateOf(one.clip);
     report.frames = frameCount(one.clip, report.framesPerSecond);
-    added.push_back(turnClip(std::move(one.clip), character.skeleton, options.turn));
+    added.push_back(turnClip(std::move(one.clip), character.skeleton(), options.turn));
   }
-  const std::vector<std::string> written = addClips(asset, character, added);
+  const std::vector<std::string> written = addClips(asset, character.moving(), added);
   for (std::size_t c = 0; c < written.size(); ++c) reports[c].name = written[c];
   return reports;
 }

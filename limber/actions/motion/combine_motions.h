@@ -18,7 +18,7 @@ struct CombineOptions {
 // motion, but for names, frames and rates. What blendMotions and joinMotions warn of is added to the asset's warnings.
 // Throws as retargetOnto, blendMotions and joinMotions do, and Error kBadArgument where the motions have not as many
 // clips: two for a blend, two or more else.
-std::vector<RetargetedClip> combineOnto(Asset& asset, std::span<const Motion> motions,
+std::vector<RetargetedClip> combineOnto(Asset& asset, const Character& character, std::span<const Motion> motions,
                                         const RetargetAssetOptions& options, const CombineOptions& combine);
 
 }  // namespace limber

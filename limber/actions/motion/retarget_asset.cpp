@@ -9,8 +9,6 @@
 #include "limber/document/clip/clip_io.h"
 #include "limber/document/clip/motion_io.h"
 #include "limber/document/rig/rig_io.h"
-#include "limber/document/scene/geometry.h"
-#include "limber/motion/limbs/body/body_skin.h"
 #include "limber/motion/mix/planted_feet.h"
 #include "limber/skeleton/clip/clip_edit.h"
 #include "limber/skeleton/clip/moving_scales.h"
@@ -40,11 +38,12 @@ Motion bodyOf(const Motion& motion, const RetargetAssetOptions& options) {
   return options.mapJson && options.body.empty() ? motion : motionOfBody(motion, options.body);
 }
 
-SkeletonMap mapFor(const Motion& motion, const Skeleton& target, const RetargetAssetOptions& options) {
-  if (options.mapJson) return skeletonMapFromJson(*options.mapJson, motion.skeleton, target);
-  if (!options.matches) return matchMotion(motion, target, options.unlikeBodies);
+SkeletonMap mapFor(const Motion& motion, const SkeletonReading& source, const SkeletonReading& target,
+                   const RetargetAssetOptions& options) {
+  if (options.mapJson) return skeletonMapFromJson(*options.mapJson, motion.skeleton, target.skeleton());
+  if (!options.matches) return matchMotion(motion, source, target, options.unlikeBodies);
   const std::optional<Pose> pose = poseWithForm(motion);
-  return options.matches->match(motion.skeleton, target, options.unlikeBodies, pose ? &*pose : nullptr);
+  return options.matches->match(source, target, options.unlikeBodies, pose ? &*pose : nullptr);
 }
 
 void warnOfDoubts(const SkeletonMap& map, const Motion& motion, const Skeleton& target, Warnings& warnings) {
@@ -65,13 +64,12 @@ void warnOfScales(const Motion& motion, const Clip& clip, Warnings& warnings) {
 }
 
 // Null, with a warning, where the character has a skin whose surface cannot be read: it moves all the same.
-std::shared_ptr<const BodySkin> bodySkinOf(Asset& asset) {
+std::shared_ptr<const BodySkin> bodySkinOf(const Character& character, Warnings& warnings) {
   try {
-    const Geometry geometry = collectGeometry(asset);
-    const AssetSkeleton character = readSkeleton(asset);
-    return makeBodySkin(character.skeleton, geometry.positions, readWeights(asset, geometry, character));
+    return character.skin();
   } catch (const Error& error) {
-    asset.warnings.add("no-surface", fmt::format("arms are not kept out of the body: {}", error.what()), asset.name);
+    warnings.add("no-surface", fmt::format("arms are not kept out of the body: {}", error.what()),
+                 character.document().name);
     return nullptr;
   }
 }
@@ -82,41 +80,45 @@ bool canMove(const Asset& asset) {
   return hasRig(asset) || isSkeletonAlone(asset);
 }
 
-CharacterClips retargetedClips(Asset& asset, const Motion& given, const RetargetAssetOptions& options, bool withFeet) {
+CharacterClips retargetedClips(const Character& character, const Motion& given, const RetargetAssetOptions& options,
+                               bool withFeet, Warnings& warnings) {
+  const Asset& asset = character.document();
   const RetargetMethod& method = findRetargetMethod(options.method);
   if (!canMove(asset)) throw Error(ErrorCode::kUnsupported, "the model has no rig to move", asset.name);
   if (given.clips.empty()) throw Error(ErrorCode::kUnsupported, "holds no motion", given.name);
-  const Motion motion = asItRests(bodyOf(given, options));
-  const AssetSkeleton character = animatedSkeleton(asset);
-  const SkeletonMap map = mapFor(motion, character.skeleton, options);
-  warnOfDoubts(map, motion, character.skeleton, asset.warnings);
+  Motion body = bodyOf(given, options);
+  const SkeletonReading source(body.skeleton);
+  const Motion motion = asItRests(std::move(body), source);
+  const Skeleton& target = character.skeleton();
+  const SkeletonMap map = mapFor(motion, source, character.reading(), options);
+  warnOfDoubts(map, motion, target, warnings);
   RetargetOptions retarget = options.retarget;
   retarget.characterStands = !isSkeletonAlone(asset);
-  if (hasRig(asset)) retarget.skin = bodySkinOf(asset);
+  if (character.hasRig()) retarget.skin = bodySkinOf(character, warnings);
   CharacterClips result;
   for (std::size_t c = 0; c < motion.clips.size(); ++c) {
     const Clip& clip = motion.clips[c];
     const double rate = options.frameRate.value_or(frameRateOf(motion, c));
-    warnOfScales(motion, clip, asset.warnings);
+    warnOfScales(motion, clip, warnings);
     ClipWithContacts& made = result.clips.emplace_back();
-    made.clip = retargetClip(method, motion.skeleton, clip, character.skeleton, map, retarget, rate);
+    made.clip = retargetClip(method, motion.skeleton, clip, target, map, retarget, rate);
     made.clip.name = motion.clips.size() == 1 ? motion.name : clip.name;
-    if (withFeet) made.feet = plantedFeet(motion.skeleton, clip, character.skeleton, map, retarget, rate);
+    if (withFeet) made.feet = plantedFeet(motion.skeleton, clip, target, map, retarget, rate);
     result.reports.push_back({made.clip.name, frameCount(clip, rate), rate, map,
-                              doubtfulMatches(map, motion.skeleton, character.skeleton),
-                              skeletonMapToJson(map, motion.skeleton, character.skeleton)});
+                              doubtfulMatches(map, motion.skeleton, target),
+                              skeletonMapToJson(map, motion.skeleton, target)});
   }
   return result;
 }
 
-std::vector<RetargetedClip> retargetOnto(Asset& asset, const Motion& motion, const RetargetAssetOptions& options) {
-  CharacterClips made = retargetedClips(asset, motion, options, false);
-  const AssetSkeleton character = animatedSkeleton(asset);
+std::vector<RetargetedClip> retargetOnto(Asset& asset, const Character& character, const Motion& motion,
+                                         const RetargetAssetOptions& options) {
+  CharacterClips made = retargetedClips(character, motion, options, false, asset.warnings);
   std::vector<Clip> clips;
   for (ClipWithContacts& one : made.clips) {
-    clips.push_back(turnClip(std::move(one.clip), character.skeleton, options.turn));
+    clips.push_back(turnClip(std::move(one.clip), character.skeleton(), options.turn));
   }
-  const std::vector<std::string> written = addClips(asset, character, clips);
+  const std::vector<std::string> written = addClips(asset, character.moving(), clips);
   for (std::size_t c = 0; c < written.size(); ++c) made.reports[c].name = written[c];
   return made.reports;
 }

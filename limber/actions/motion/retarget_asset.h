@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "limber/character/character.h"
 #include "limber/character/matching/skeleton_matches.h"
-#include "limber/document/rig/rig_io.h"
 #include "limber/motion/retarget/retarget_clip.h"
 #include "limber/skeleton/motion.h"
 
@@ -38,14 +38,20 @@ bool canMove(const Asset& asset);
 
 // What a motion is on the character, neither turned (RetargetAssetOptions::turn) nor added: a clip for each of its
 // clips. Contacts are of the character's feet (plantedFeet), where asked for. Throws as retargetOnto does.
+//
+// warnings  get what the clips lose and which matches are doubtful
 struct CharacterClips {
   std::vector<ClipWithContacts> clips;
   std::vector<RetargetedClip> reports;
 };
-CharacterClips retargetedClips(Asset& asset, const Motion& motion, const RetargetAssetOptions& options, bool withFeet);
+CharacterClips retargetedClips(const Character& character, const Motion& motion, const RetargetAssetOptions& options,
+                               bool withFeet, Warnings& warnings);
 
 // A clip for each clip of `motion`, added to the document: called as the motion, or, where it has several, as they are.
 // Throws Error kUnsupported where the document cannot move or the motion has no clip, and as matchSkeletons does.
-std::vector<RetargetedClip> retargetOnto(Asset& asset, const Motion& motion, const RetargetAssetOptions& options);
+//
+// character  of the document, which may have got clips since
+std::vector<RetargetedClip> retargetOnto(Asset& asset, const Character& character, const Motion& motion,
+                                         const RetargetAssetOptions& options);
 
 }  // namespace limber

@@ -57,7 +57,7 @@ TEST(RetargetAsset, AMotionInTwoSkinsIsOfTwoBodies) {
   hero.skeleton = limber::testing::oddlyBuilt();
   Asset character = motionAsset(hero);
   try {
-    retargetOnto(character, motion, {});
+    retargetOnto(character, Character(character), motion, {});
     FAIL() << "which of both?";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::kUnsupported);
@@ -65,7 +65,7 @@ TEST(RetargetAsset, AMotionInTwoSkinsIsOfTwoBodies) {
   }
   RetargetAssetOptions second;
   second.body = "hips_2";
-  const std::vector<RetargetedClip> clips = retargetOnto(character, motion, second);
+  const std::vector<RetargetedClip> clips = retargetOnto(character, Character(character), motion, second);
   ASSERT_EQ(clips.size(), 1u);
   EXPECT_TRUE(clips[0].map.isBiped());
   EXPECT_THAT(clips[0].mapJson, HasSubstr("hips_2"));
@@ -82,7 +82,7 @@ TEST(RetargetAsset, DoubtfulMatchesAreAWarning) {
     Motion hero;
     hero.skeleton = isSame ? person : limber::testing::oddlyBuilt();
     Asset character = motionAsset(hero);
-    const std::vector<RetargetedClip> clips = retargetOnto(character, motion, {});
+    const std::vector<RetargetedClip> clips = retargetOnto(character, Character(character), motion, {});
     ASSERT_EQ(clips.size(), 1u);
     EXPECT_EQ(clips[0].doubtful.empty(), isSame);
     std::size_t warned = 0;
@@ -112,7 +112,7 @@ TEST(RetargetAsset, ScalesThatMoveAreAWarning) {
     Motion hero;
     hero.skeleton = limber::testing::oddlyBuilt();
     Asset character = motionAsset(hero);
-    const std::vector<RetargetedClip> clips = retargetOnto(character, motion, {});
+    const std::vector<RetargetedClip> clips = retargetOnto(character, Character(character), motion, {});
     ASSERT_EQ(clips.size(), 1u);
     EXPECT_EQ(limber::testing::countOf(character.warnings, "motion-scales"), moves ? 2u : 0u) << "joints";
     std::vector<std::string> places;

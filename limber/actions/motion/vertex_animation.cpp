@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "limber/character/character.h"
 #include "limber/core/known_error.h"
 #include "limber/deform/linear_blend.h"
 #include "limber/document/clip/clip_io.h"
@@ -136,10 +137,12 @@ bool movesNodes(const Asset& asset) {
 // Puts the vertices of a document where they are at a moment.
 class VertexPoser {
  public:
-  explicit VertexPoser(const Asset& asset) : geometry_(collectGeometry(asset)) {
+  explicit VertexPoser(const Asset& asset) {
+    const Character character(asset);
+    geometry_ = character.surface();
     morphs_ = morphTargetsOf(asset, geometry_);
-    if (!asset.document.skins.empty() || movesNodes(asset)) skeleton_ = animatedSkeleton(asset);
-    if (skeleton_.jointNode.empty()) return;
+    if (asset.document.skins.empty() && !movesNodes(asset)) return;
+    skeleton_ = character.moving();
     weights_ = readWeights(asset, geometry_, skeleton_);
     normalizeWeights(weights_);
     checkWeights(weights_, skeleton_.skeleton.jointCount());

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "limber/character/character.h"
 #include "limber/core/text/names.h"
 #include "limber/document/rig/rig_io.h"
 #include "limber/geometry/mesh/prepare.h"
@@ -98,8 +99,8 @@ SurfaceParts modelParts(const Asset& asset, const Geometry& geometry, const Part
   const KeptSurface surface = keptSurface(geometry);
   SurfaceParts parts;
   if (rigged && options.method != PartMethod::kShape) {
-    const AssetSkeleton rig = readSkeleton(asset);
-    parts = byWeights(geometry, surface, rig.skeleton, readWeights(asset, geometry, rig), options.detail, progress);
+    const Character character(asset);
+    parts = byWeights(geometry, surface, character.binding().skeleton, character.weights(), options.detail, progress);
   } else {
     parts = partsByShape(surface.graph, {options.count}, progress);
   }

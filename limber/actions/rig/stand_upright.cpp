@@ -51,8 +51,8 @@ bool isNamedBiped(const Anatomy& anatomy) {
 }
 
 // From a rest pose that lies to clips of which most begin with one who stands along +Y; else none.
-Quat turnOfClips(const Motion& motion) {
-  const Quat turn = turnToStand(motion.skeleton);
+Quat turnOfClips(const Motion& motion, const SkeletonReading& skeleton) {
+  const Quat turn = turnToStand(skeleton);
   if (turn.isApprox(Quat::Identity())) return turn;
   std::size_t standing = 0;
   for (const Clip& clip : motion.clips) {
@@ -64,22 +64,22 @@ Quat turnOfClips(const Motion& motion) {
   return 2 * standing > motion.clips.size() ? turn : Quat::Identity();
 }
 
-std::optional<Vec3> restsAlong(const Asset& asset) {
-  const Skeleton skeleton = animatedSkeleton(asset).skeleton;
-  return standsAlong(skeleton, restPose(skeleton));
+std::optional<Vec3> restsAlong(const Character& character) {
+  return standsAlong(character.reading(), restPose(character.skeleton()));
 }
 
 }  // namespace
 
-std::optional<Vec3> standsAlong(const Skeleton& skeleton, const Pose& pose) {
-  if (!hasForm(skeleton, pose) || !isNamedBiped(readAnatomy(skeleton))) return {};
-  const SkeletonMap map = matchSkeletons(skeleton, skeleton);
+std::optional<Vec3> standsAlong(const SkeletonReading& reading, const Pose& pose) {
+  const Skeleton& skeleton = reading.skeleton();
+  if (!hasForm(skeleton, pose) || !isNamedBiped(reading.anatomy())) return {};
+  const SkeletonMap map = matchSkeletons(reading, reading);
   if (!map.isBiped() || !standsUpright(skeleton, pose, map, MapSide::kTarget)) return {};
   return neutralPose(skeleton, pose, map, MapSide::kTarget, {}).toBody.conjugate() * Vec3::UnitY();
 }
 
-Quat turnToStand(const Skeleton& skeleton) {
-  const std::optional<Vec3> up = standsAlong(skeleton, restPose(skeleton));
+Quat turnToStand(const SkeletonReading& reading) {
+  const std::optional<Vec3> up = standsAlong(reading, restPose(reading.skeleton()));
   return up && !isUpright(*up) ? turnOf(*up) : Quat::Identity();
 }
 
@@ -99,29 +99,36 @@ void warnMaybeLies(const Vec3& up, double confidence, Warnings& warnings) {
                                                 nameOfAxis(up), 100 * confidence));
 }
 
-Quat standUpright(Asset& asset, Warnings& warnings) {
-  const std::optional<Vec3> up = restsAlong(asset);
-  if (!up || isUpright(*up)) return Quat::Identity();
-  const Quat turn = turnOfClips(motionOf(asset));
+UprightCharacter standUpright(Asset& asset, Warnings& warnings) {
+  const Character character(asset);
+  const std::optional<Vec3> up = restsAlong(character);
+  if (!up || isUpright(*up)) return {character};
+  const Quat turn = turnOfClips(motionOf(asset, character.moving()), character.reading());
   if (turn.isApprox(Quat::Identity())) {
     gltf::Document before = asset.document;
     Warnings turned;
     standUpright(asset, *up, true, turned);
-    if (const std::optional<Vec3> now = restsAlong(asset); now && isUpright(*now)) {
+    const Character standing(asset);
+    if (const std::optional<Vec3> now = restsAlong(standing); now && isUpright(*now)) {
       warnings.append(turned);
-      return Quat::Identity();
+      return {standing};
     }
     asset.document = std::move(before);  // skins may be bound to where their mesh lies
   }
   warnings.add(kTurned,
                fmt::format("the model rests along {}; the new clips are turned to stand along +Y", nameOfAxis(*up)));
-  return turnOf(*up);
+  return {character, turnOf(*up)};
+}
+
+Motion asItRests(Motion motion, const SkeletonReading& skeleton) {
+  const Quat back = turnOfClips(motion, skeleton).conjugate();
+  for (Clip& clip : motion.clips) clip = turnClip(std::move(clip), motion.skeleton, back);
+  return motion;
 }
 
 Motion asItRests(Motion motion) {
-  const Quat back = turnOfClips(motion).conjugate();
-  for (Clip& clip : motion.clips) clip = turnClip(std::move(clip), motion.skeleton, back);
-  return motion;
+  const SkeletonReading skeleton(motion.skeleton);
+  return asItRests(std::move(motion), skeleton);
 }
 
 }  // namespace limber

@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "limber/character/character.h"
 #include "limber/core/error.h"
 #include "limber/document/asset.h"
 #include "limber/skeleton/motion.h"
@@ -12,10 +13,10 @@ namespace limber {
 
 // The axis that a person in that pose stands along; none where names of joints tell no person, where the pose
 // has no form (hasForm), or where head and feet lie to the same side of the hips.
-std::optional<Vec3> standsAlong(const Skeleton& skeleton, const Pose& pose);
+std::optional<Vec3> standsAlong(const SkeletonReading& skeleton, const Pose& pose);
 
 // What turns one who stands along another axis in rest pose to stand along +Y; none for all others.
-Quat turnToStand(const Skeleton& skeleton);
+Quat turnToStand(const SkeletonReading& skeleton);
 
 // Turns a document that stands along the axis nearest to `up` by a node above it (turnScene), with a warning
 // "turned-upright"; where `turn` is false there is only the warning "not-upright". Nothing where up is about +Y.
@@ -25,12 +26,16 @@ void standUpright(Asset& asset, const Vec3& up, bool turn, Warnings& warnings);
 void warnMaybeLies(const Vec3& up, double confidence, Warnings& warnings);
 
 // As standUpright, of a person's skeleton in a document, before clips are added. Where its clips stand and its rest
-// pose lies, or where no node above it helps, the document stays as it is: these clips then need the turn that is given
-// back, else none.
-Quat standUpright(Asset& asset, Warnings& warnings);
+// pose lies, or where no node above it helps, the document stays as it is: new clips then need `turn`, else none.
+struct UprightCharacter {
+  Character character;  // of the document as it is now
+  Quat turn = Quat::Identity();
+};
+UprightCharacter standUpright(Asset& asset, Warnings& warnings);
 
 // A motion whose clips stand along +Y while its rest pose lies: with its clips turned to lie as well, so that one is
 // measured against the other. Any other as it is.
 Motion asItRests(Motion motion);
+Motion asItRests(Motion motion, const SkeletonReading& skeleton);  // of the motion
 
 }  // namespace limber

@@ -76,7 +76,7 @@ TEST(StandUpright, OneWhoStandsIsLeftAlone) {
   Asset asset = document(practiceHumanoid());
   const Json before = testing::documentJson(asset);
   Warnings warnings;
-  EXPECT_TRUE(standUpright(asset, warnings).isApprox(Quat::Identity()));
+  EXPECT_TRUE(standUpright(asset, warnings).turn.isApprox(Quat::Identity()));
   EXPECT_TRUE(warnings.empty());
   EXPECT_EQ(testing::documentJson(asset), before);
 }
@@ -85,7 +85,7 @@ TEST(StandUpright, DocumentsAreTurned) {
   for (const Vec3& up : kAxes) {
     Asset asset = document(personAlong(up));
     Warnings warnings;
-    EXPECT_TRUE(standUpright(asset, warnings).isApprox(Quat::Identity()));
+    EXPECT_TRUE(standUpright(asset, warnings).turn.isApprox(Quat::Identity()));
     EXPECT_THAT(kindsOf(warnings), ElementsAre("turned-upright"));
     EXPECT_TRUE(upOf(asset)->isApprox(Vec3::UnitY(), 1e-9)) << up.transpose();
   }
@@ -98,10 +98,10 @@ TEST(StandUpright, NewClipsStandAsThoseThatAreThere) {
     const Json before = testing::documentJson(asset);
     Warnings warnings;
     RetargetAssetOptions options;
-    options.turn = standUpright(asset, warnings);
+    options.turn = standUpright(asset, warnings).turn;
     EXPECT_THAT(kindsOf(warnings), ElementsAre("turned-upright"));
     EXPECT_EQ(testing::documentJson(asset), before);
-    retargetOnto(asset, motion, options);
+    retargetOnto(asset, Character(asset), motion, options);
     EXPECT_TRUE(upOf(asset)->isApprox(up, 1e-6));
     EXPECT_TRUE(upOf(asset, 0.5)->isApprox(Vec3::UnitY(), 1e-6)) << up.transpose();
   }
@@ -110,7 +110,7 @@ TEST(StandUpright, NewClipsStandAsThoseThatAreThere) {
 TEST(StandUpright, SourcesThatLieAtRestMoveOthersUpright) {
   for (const Vec3& up : kAxes) {
     Asset asset = document(practiceHumanoid());
-    retargetOnto(asset, motionOf(document(personAlong(up), {standingStill()})), {});
+    retargetOnto(asset, Character(asset), motionOf(document(personAlong(up), {standingStill()})), {});
     EXPECT_TRUE(upOf(asset, 0.5)->isApprox(Vec3::UnitY(), 1e-6)) << up.transpose();
   }
 }

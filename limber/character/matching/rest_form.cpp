@@ -143,9 +143,14 @@ Skeleton skeletonWithForm(const Motion& motion) {
   return pose ? restingIn(motion.skeleton, *pose) : motion.skeleton;
 }
 
-SkeletonMap matchMotion(const Motion& motion, const Skeleton& target, bool unlikeBodies) {
+SkeletonMap matchMotion(const Motion& motion, const SkeletonReading& source, const SkeletonReading& target,
+                        bool unlikeBodies) {
   const std::optional<Pose> pose = poseWithForm(motion);
-  return matchSkeletons(motion.skeleton, target, unlikeBodies, pose ? &*pose : nullptr);
+  return matchSkeletons(source, target, unlikeBodies, pose ? &*pose : nullptr);
+}
+
+SkeletonMap matchMotion(const Motion& motion, const SkeletonReading& target, bool unlikeBodies) {
+  return matchMotion(motion, motion.skeleton, target, unlikeBodies);
 }
 
 }  // namespace limber

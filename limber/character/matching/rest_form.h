@@ -27,6 +27,10 @@ Skeleton restingIn(Skeleton skeleton, const Pose& pose);
 Skeleton skeletonWithForm(const Motion& motion);
 
 // matchSkeletons(), with the source read in that pose where there is one.
-SkeletonMap matchMotion(const Motion& motion, const Skeleton& target, bool unlikeBodies = false);
+//
+// source  of the motion's skeleton
+SkeletonMap matchMotion(const Motion& motion, const SkeletonReading& source, const SkeletonReading& target,
+                        bool unlikeBodies = false);
+SkeletonMap matchMotion(const Motion& motion, const SkeletonReading& target, bool unlikeBodies = false);
 
 }  // namespace limber

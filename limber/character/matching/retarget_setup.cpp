@@ -107,12 +107,16 @@ double legHeight(const std::vector<AnimalLeg>& legs, const SkeletonMap& map, Map
 }
 
 // Which way others than people face; these tell it by their limbs.
-Axes axesOf(const Skeleton& skeleton, bool person) {
-  return person ? Axes{} : readAnatomy(skeleton).axes;
+Axes axesOf(const SkeletonReading& reading, bool person) {
+  return person ? Axes{} : reading.anatomy().axes;
 }
 
-std::vector<Index> tailOf(const Skeleton& skeleton) {
-  const Anatomy anatomy = readAnatomy(skeleton);
+// The map's, where it was made for this skeleton and not for one in another space.
+SkeletonReading readingOf(const Skeleton& skeleton, const std::optional<SkeletonReading>& known) {
+  return known && known->isOf(skeleton) ? *known : SkeletonReading(skeleton);
+}
+
+std::vector<Index> tailOf(const Anatomy& anatomy) {
   const Part* tail = anatomy.find(PartKind::kTail);
   return tail ? tail->joints : std::vector<Index>();
 }
@@ -156,15 +160,17 @@ RetargetSetup::RetargetSetup(const Skeleton& from, const Skeleton& to, SkeletonM
     : source(&from),
       target(&to),
       map((checkSkeletonMap(matches, from, to), std::move(matches))),
+      sourceReading(readingOf(from, map.source)),
+      targetReading(readingOf(to, map.target)),
       options(asked),
       person(map.isBiped()),
       quadruped(map.isQuadruped()),
       sourceRest(restOf(from, motion ? std::span(motion->poses) : std::span<const Pose>(), map)),
       targetRest(map.twins ? poseAsTwin(from, sourceRest, to, *map.twins) : restPose(to)),
-      sourceNeutral(neutralPose(from, sourceRest, map, MapSide::kSource, axesOf(from, person))),
+      sourceNeutral(neutralPose(from, sourceRest, map, MapSide::kSource, axesOf(sourceReading, person))),
       targetNeutral(map.twins ? neutralPoseIn((sourceNeutral.toBody * map.twins->turn.conjugate()).normalized(), to,
                                               targetRest, map, MapSide::kTarget)
-                              : neutralPose(to, targetRest, map, MapSide::kTarget, axesOf(to, person))),
+                              : neutralPose(to, targetRest, map, MapSide::kTarget, axesOf(targetReading, person))),
       sourceKinematics(from, sourceNeutral.toBody),
       targetKinematics(to, targetNeutral.toBody) {
   if (person) {
@@ -207,7 +213,7 @@ RetargetSetup::RetargetSetup(const Skeleton& from, const Skeleton& to, SkeletonM
   targetGround = lowest(groundJoints(map, MapSide::kTarget), targetNeutral.restPositions);
   // What rests in the air flies: its feet have no ground to keep to.
   if ((targetGround >= kFlies * targetHipHeight && !quadruped) || map.unlikeBodies) animalLegs.clear();
-  if (!animalLegs.empty()) targetTail = tailOf(to);
+  if (!animalLegs.empty()) targetTail = tailOf(targetReading.anatomy());
   if (!standsAt(targetGround, targetHipHeight)) {
     if (!person)
       targetGround += scale * (sourceGround - restGround);

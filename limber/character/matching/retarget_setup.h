@@ -8,6 +8,7 @@
 
 #include "limber/character/matching/animal_legs.h"
 #include "limber/character/matching/body_frame.h"
+#include "limber/character/matching/body_skin.h"
 #include "limber/character/matching/neutral_pose.h"
 #include "limber/character/matching/skeleton_map.h"
 
@@ -24,13 +25,6 @@ struct ContactEdit {
   std::string foot;         // the source's joint (FootSpans::foot)
   double from = 0, to = 0;  // seconds of the motion
   bool planted = false;
-};
-
-// A character's skin, as far as it matters where its body is: places in the frames of the joints that carry them (their
-// rotations, metres). Made by makeBodySkin (limber/motion/limbs/body/body_skin.h).
-struct BodySkin {
-  std::vector<Vec3> places;
-  std::vector<Index> joints;
 };
 
 enum class RootScale {
@@ -70,6 +64,7 @@ struct RetargetSetup {
   const Skeleton* source;
   const Skeleton* target;
   SkeletonMap map;
+  SkeletonReading sourceReading, targetReading;
   RetargetOptions options;
   bool person = false;  // SkeletonMap::isBiped
   // All bones are alike but for their size, and each joint of the target follows one: then every joint moves as its

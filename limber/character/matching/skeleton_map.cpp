@@ -63,25 +63,36 @@ std::string labelOfWhole(const Anatomy& anatomy, const BodyPart& part, bool both
 
 class Matcher {
  public:
-  Matcher(const Skeleton& source, const Skeleton& target, bool unlikeBodies, const Pose* sourcePose)
-      : given_(source),
-        posed_(sourcePose ? std::optional(restingIn(source, *sourcePose)) : std::nullopt),
-        source_(posed_ ? *posed_ : source),
-        target_(target),
+  Matcher(const SkeletonReading& source, const SkeletonReading& target, bool unlikeBodies, const Pose* sourcePose)
+      : sourceReading_(source),
+        targetReading_(target),
+        given_(source.skeleton()),
+        posed_(sourcePose ? std::optional(restingIn(given_, *sourcePose)) : std::nullopt),
+        source_(posed_ ? *posed_ : given_),
+        target_(target.skeleton()),
         unlikeBodies_(unlikeBodies),
-        from_(source_, AnatomyOptions{.names = true, .fixed = {}, .sidesByNames = posed_.has_value()}),
-        to_(target),
+        from_(posed_ ? BodyPieces(*posed_, AnatomyOptions{.names = true, .fixed = {}, .sidesByNames = true})
+                     : source.pieces()),
+        to_(target.pieces()),
         sourceTree_(source_),
-        targetTree_(target) {
+        targetTree_(target_) {
     if (!standOnMany()) return;
     from_.cutLegsWhereTheyStand(source_);
-    to_.cutLegsWhereTheyStand(target);
+    to_.cutLegsWhereTheyStand(target_);
   }
   // Its members point into each other.
   Matcher(const Matcher&) = delete;
   Matcher& operator=(const Matcher&) = delete;
 
   SkeletonMap match() {
+    SkeletonMap map = matched();
+    map.source = sourceReading_;
+    map.target = targetReading_;
+    return map;
+  }
+
+ private:
+  SkeletonMap matched() {
     const std::vector<Index> sourceLine = from_.lineOfLimbless(source_), targetLine = to_.lineOfLimbless(target_);
     areLines_ = sourceLine.size() > 1 && targetLine.size() > 1;
     if (areLines_)
@@ -109,7 +120,6 @@ class Matcher {
     return std::move(map_);
   }
 
- private:
   void add(const BodyPart& part, std::vector<Index> source, std::vector<Index> target, double confidence,
            MatchedBy by) {
     std::erase_if(target, [&](Index joint) { return matchedTarget_.count(joint) > 0; });
@@ -609,6 +619,7 @@ class Matcher {
     return fmt::format("the motion's joints show {}, the character's {}", seen(from_.anatomy), seen(to_.anatomy));
   }
 
+  const SkeletonReading sourceReading_, targetReading_;
   const Skeleton& given_;                // the source in its own rest pose
   const std::optional<Skeleton> posed_;  // and in the pose that it is read in, if another is given
   const Skeleton &source_, &target_;     // as they are read
@@ -647,7 +658,8 @@ std::string nameOf(const JointMatch& match, const Skeleton& target) {
   return bodyPartNamed(name) ? "joint " + name : name;  // "jaw" would be read as that part of the body
 }
 
-SkeletonMap matchSkeletons(const Skeleton& source, const Skeleton& target, bool unlikeBodies, const Pose* sourcePose) {
+SkeletonMap matchSkeletons(const SkeletonReading& source, const SkeletonReading& target, bool unlikeBodies,
+                           const Pose* sourcePose) {
   return Matcher(source, target, unlikeBodies, sourcePose).match();
 }
 

@@ -1,11 +1,13 @@
 // Which joints of one skeleton take their motion from which joints of another.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "limber/character/anatomy/body_part.h"
+#include "limber/character/anatomy/skeleton_reading.h"
 #include "limber/character/matching/twin_match.h"
 
 namespace limber {
@@ -37,6 +39,9 @@ struct SkeletonMap {
   bool jointByJoint = false;        // each joint moves as its partner does, and no limb is solved for: of one family of
                                     // animals, whose joints have the same names, and of bodies that stand otherwise
 
+  // Of the skeletons that were matched, so that whoever uses the map reads neither again; none of a map out of a file.
+  std::optional<SkeletonReading> source, target;
+
   const JointMatch* find(const BodyPart& part) const;
   // Two legs on one pelvis, no more and no wings: what moves as people do.
   bool isBiped() const;
@@ -59,7 +64,7 @@ std::string nameOf(const JointMatch& match, const Skeleton& target);
 //
 // sourcePose (#J locals), if given, is the pose in which the source's body is read, for one whose rest pose tells
 // nothing (poseWithForm, rest_form.h). Twins are found by the rest poses all the same.
-SkeletonMap matchSkeletons(const Skeleton& source, const Skeleton& target, bool unlikeBodies = false,
+SkeletonMap matchSkeletons(const SkeletonReading& source, const SkeletonReading& target, bool unlikeBodies = false,
                            const Pose* sourcePose = nullptr);
 
 // Throws Error kBadData naming the part: no joint, one that is not there, or one target joint in two parts.

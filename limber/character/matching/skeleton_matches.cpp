@@ -51,12 +51,12 @@ std::shared_ptr<SkeletonMatches::Entry> SkeletonMatches::entryOf(std::string key
   return made;
 }
 
-SkeletonMap SkeletonMatches::match(const Skeleton& source, const Skeleton& target, bool unlikeBodies,
+SkeletonMap SkeletonMatches::match(const SkeletonReading& source, const SkeletonReading& target, bool unlikeBodies,
                                    const Pose* sourcePose) {
   std::string key;
   addBytes(key, unlikeBodies);
-  addBytes(key, source);
-  addBytes(key, target);
+  addBytes(key, source.skeleton());
+  addBytes(key, target.skeleton());
   if (sourcePose) {
     for (const Transform& local : sourcePose->locals) addBytes(key, local);
   }

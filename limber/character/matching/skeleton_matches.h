@@ -18,7 +18,7 @@ namespace limber {
 class SkeletonMatches {
  public:
   // As matchSkeletons, whose errors it throws.
-  SkeletonMap match(const Skeleton& source, const Skeleton& target, bool unlikeBodies,
+  SkeletonMap match(const SkeletonReading& source, const SkeletonReading& target, bool unlikeBodies,
                     const Pose* sourcePose = nullptr);
 
   // How many were made.

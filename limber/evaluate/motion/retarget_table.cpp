@@ -9,7 +9,7 @@
 #include "limber/document/clip/motion_io.h"
 #include "limber/evaluate/held_out.h"
 #include "limber/evaluate/skin/skinned_model.h"
-#include "limber/motion/limbs/body/body_skin.h"
+#include "limber/motion/limbs/body/skin_tube.h"
 #include "limber/motion/limbs/roughness.h"
 
 namespace limber {
@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kMostVertices = 1500;  // enough for means over many pairs
 
-struct Character {
+struct RatedCharacter {
   std::string name;
   bool heldOut;
   Skeleton skeleton;
@@ -26,8 +26,8 @@ struct Character {
   std::shared_ptr<const BodySkin> skin;
 };
 
-std::vector<Character> readCharacters(std::span<const std::filesystem::path> files, Warnings& skipped) {
-  std::vector<Character> characters;
+std::vector<RatedCharacter> readCharacters(std::span<const std::filesystem::path> files, Warnings& skipped) {
+  std::vector<RatedCharacter> characters;
   for (const std::filesystem::path& file : files) {
     try {
       const Asset asset = readAsset(file);
@@ -64,7 +64,7 @@ class Scorer {
         continue;
       }
       const std::string name = motion.clips.size() == 1 ? motion.name : motion.name + ":" + clip.name;
-      for (const Character& character : characters_) {
+      for (const RatedCharacter& character : characters_) {
         scoreOn(plain.skeleton(), source, {name, isHeldOut(file)}, character, scores);
       }
     }
@@ -76,13 +76,13 @@ class Scorer {
     bool heldOut;
   };
 
-  std::optional<double> insideOf(const Character& character, const std::vector<Pose>& poses) const {
+  std::optional<double> insideOf(const RatedCharacter& character, const std::vector<Pose>& poses) const {
     if (!character.model || trial_.insideFrames == 0) return std::nullopt;
     return measureSelfPenetration(*character.model, poses, {trial_.insideFrames, kMostVertices}).mean;
   }
 
-  void scoreOn(const Skeleton& skeleton, const PoseSequence& source, const Named& motion, const Character& character,
-               std::vector<RetargetScore>& scores) const {
+  void scoreOn(const Skeleton& skeleton, const PoseSequence& source, const Named& motion,
+               const RatedCharacter& character, std::vector<RetargetScore>& scores) const {
     try {
       const PlainSkeleton plain(character.skeleton);
       RetargetOptions options;
@@ -131,7 +131,7 @@ class Scorer {
   const RetargetTrial& trial_;
   Warnings& skipped_;
   std::vector<const RetargetMethod*> methods_;
-  std::vector<Character> characters_;
+  std::vector<RatedCharacter> characters_;
 };
 
 // Mean and worst of one measure.

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "limber/character/character.h"
 #include "limber/document/clip/clip_io.h"
 #include "limber/document/read.h"
 #include "limber/document/rig/rig_io.h"
@@ -17,9 +18,9 @@ namespace {
 
 constexpr double kComesBack = 0.3;  // percent of the diagonal
 
-Index weightedJoints(const Asset& asset, const AssetSkeleton& skeleton) {
-  const SkinWeights weights = readWeights(asset, collectGeometry(asset), skeleton);
-  std::vector<bool> isUsed(skeleton.skeleton.jointCount(), false);
+Index weightedJoints(const Character& character) {
+  const SkinWeights& weights = character.weights();
+  std::vector<bool> isUsed(character.binding().skeleton.jointCount(), false);
   for (std::size_t i = 0; i < weights.weights.size(); ++i) {
     if (weights.weights[i] > 0) isUsed[weights.joints[i]] = true;
   }
@@ -29,16 +30,16 @@ Index weightedJoints(const Asset& asset, const AssetSkeleton& skeleton) {
 std::optional<DecompositionRow> decomposeFile(const std::filesystem::path& path, const Decomposer& decompose) {
   const Asset asset = readAsset(path);
   if (!hasRig(asset)) return std::nullopt;
-  const AssetSkeleton skeleton = readSkeleton(asset);
+  const Character character(asset);
   Warnings ignored;
-  const std::vector<Clip> clips = readClips(asset, skeleton, ignored);
+  const std::vector<Clip> clips = readClips(asset, character.binding(), ignored);
   const auto longest = std::max_element(clips.begin(), clips.end(),
                                         [](const Clip& a, const Clip& b) { return a.duration() < b.duration(); });
   if (longest == clips.end() || longest->duration() == 0) return std::nullopt;
   DecompositionRow row;
   row.file = path.stem().string();
   row.clip = longest->name;
-  row.artistJoints = weightedJoints(asset, skeleton);
+  row.artistJoints = weightedJoints(character);
   decompose(asset, row.clip, row.artistJoints, row);
   return row;
 }

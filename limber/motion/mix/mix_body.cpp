@@ -5,7 +5,8 @@ namespace limber {
 namespace {
 
 RetargetSetup ontoItself(const Skeleton& skeleton) {
-  RetargetSetup setup(skeleton, skeleton, matchSkeletons(skeleton, skeleton), {});
+  const SkeletonReading reading(skeleton);
+  RetargetSetup setup(skeleton, skeleton, matchSkeletons(reading, reading), {});
   setup.sameBody = false;  // nothing is retargeted: what is mixed has to be corrected all the same
   return setup;
 }

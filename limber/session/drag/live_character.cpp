@@ -4,7 +4,7 @@
 
 #include "limber/actions/rig/stand_upright.h"
 #include "limber/character/matching/rest_form.h"
-#include "limber/motion/limbs/body/body_skin.h"
+#include "limber/motion/limbs/body/skin_tube.h"
 #include "limber/motion/retarget/retarget_clip.h"
 #include "limber/session/refuse.h"
 #include "limber/skeleton/clip/keys/keyframes.h"
@@ -20,20 +20,20 @@ constexpr std::size_t kMostLiveFrames = 36'000;  // ten minutes at 60 a second
 LiveCharacter::LiveCharacter(std::shared_ptr<const RiggedModel> rig, Skeleton source)
     : rig_(std::move(rig)),
       source_(std::move(source)),
-      map_(matchSkeletons(source_, rig_->skeleton())),
+      map_(matchSkeletons(source_, rig_->character.reading())),
       plainSource_(source_),
       plainTarget_(rig_->skeleton()),
-      turn_(turnToStand(rig_->skeleton())) {}
+      turn_(turnToStand(rig_->character.reading())) {}
 
 void LiveCharacter::begin(const Pose& source) {
   frame_.poses = {source};
   const PoseSequence plain = plainSource_.plain(frame_);
   if (const std::optional<Pose> pose = poseWithForm(source_, frame_.poses)) {
-    map_ = matchSkeletons(source_, rig_->skeleton(), false, &*pose);
+    map_ = matchSkeletons(source_, rig_->character.reading(), false, &*pose);
   }
   RetargetOptions options;
   options.characterStands = true;
-  options.skin = makeBodySkin(rig_->skeleton(), rig_->geometry->positions, rig_->weights);
+  options.skin = makeBodySkin(rig_->skeleton(), rig_->geometry().positions, rig_->weights);
   setup_.emplace(plainSource_.skeleton(), plainTarget_.skeleton(), map_, options, &plain);
   retargeter_ = findRetargetMethod("limb-ik").make(*setup_);
 }

@@ -43,15 +43,15 @@ void measureWeights(const RiggedModel& rig, SessionMeasures& measures) {
   const SkinWeights& weights = rig.weights;
   double influences = 0, differences = 0;
   for (const float weight : weights.weights) influences += weight > kInfluence;
-  for (const Triangle& t : rig.geometry->triangles) {
+  for (const Triangle& t : rig.geometry().triangles) {
     for (int c = 0; c < 3; ++c) differences += difference(weights, t[c], t[(c + 1) % 3]);
   }
   measures.influences = influences / std::max<double>(1, weights.vertexCount());
-  measures.smoothness = differences / std::max<double>(1, 3.0 * static_cast<double>(rig.geometry->triangles.size()));
+  measures.smoothness = differences / std::max<double>(1, 3.0 * static_cast<double>(rig.geometry().triangles.size()));
 }
 
 void measureSurface(const SessionState& state, SessionMeasures& measures) {
-  const Geometry& bound = *state.rig->geometry;
+  const Geometry& bound = state.rig->geometry();
   const std::vector<Vec3f> posed = posedPositions(*state.rig, state.pose, findDeformer(state.deformer));
   double change = 0, length = 0;
   for (const Triangle& t : bound.triangles) {

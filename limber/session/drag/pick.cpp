@@ -74,7 +74,7 @@ std::optional<PickHit> pickHandle(const Ray& ray, std::span<const Vec3> centers,
 }
 
 SurfacePicker::SurfacePicker(const RiggedModel& model, const Pose& pose, const Deformer& deformer)
-    : model_(model), posed_{posedPositions(model, pose, deformer), model.geometry->triangles}, tree_(posed_) {}
+    : model_(model), posed_{posedPositions(model, pose, deformer), model.geometry().triangles}, tree_(posed_) {}
 
 std::optional<SurfaceHit> SurfacePicker::hit(const Ray& ray) const {
   const Vec3 direction = ray.direction.normalized();

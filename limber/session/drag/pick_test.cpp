@@ -47,12 +47,12 @@ TEST(PickSurface, FindsThePosedSurfaceAndTheJointThatHoldsIt) {
   pose.locals[0].translation += aside;  // the whole model moves along
 
   int met = 0;
-  for (std::size_t t = 0; t < model->geometry->triangles.size(); t += 11) {
-    const Triangle& triangle = model->geometry->triangles[t];
+  for (std::size_t t = 0; t < model->geometry().triangles.size(); t += 11) {
+    const Triangle& triangle = model->geometry().triangles[t];
     Vec3 point = aside;
     std::vector<double> held(model->skeleton().joints.size());
     for (const Index v : triangle) {
-      point += model->geometry->positions[v].cast<double>() / 3;
+      point += model->geometry().positions[v].cast<double>() / 3;
       for (Index k = 0; k < model->weights.slots; ++k) {
         held[model->weights.jointsOf(v)[k]] += double{model->weights.weightsOf(v)[k]} / 3;
       }

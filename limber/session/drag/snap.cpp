@@ -28,7 +28,7 @@ double roundStep(double length) {
 DragSnap snapOf(const RiggedModel& rig, Index joint) {
   DragSnap snap;
   snap.step = roundStep(longestSide(rig) / kStepsAlongModel);
-  snap.up = rig.anatomy.axes.up;
+  snap.up = rig.anatomy().axes.up;
   for (const HeldTarget& foot : standingFeet(rig, rig.home)) {
     if (foot.joint == joint) snap.ground = snap.up.dot(foot.position);
   }

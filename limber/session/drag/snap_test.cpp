@@ -51,7 +51,7 @@ TEST(Snap, AFootOfABodyKnowsWhereTheFloorIs) {
   EXPECT_DOUBLE_EQ(snap.step, 0.02);
   ASSERT_TRUE(snap.ground);
   EXPECT_NEAR(*snap.ground, foot.position.y(), 0.01);
-  EXPECT_FALSE(snapOf(*state.rig, state.rig->anatomy.find(PartKind::kHead, Side::kCenter)->joints.front()).ground);
+  EXPECT_FALSE(snapOf(*state.rig, state.rig->anatomy().find(PartKind::kHead, Side::kCenter)->joints.front()).ground);
 }
 
 }  // namespace

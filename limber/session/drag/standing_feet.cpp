@@ -40,7 +40,7 @@ bool hasLimbs(const Anatomy& anatomy) {
 
 std::vector<HeldTarget> standingFeet(const RiggedModel& rig, const Pose& pose) {
   const Skeleton& skeleton = rig.skeleton();
-  const Anatomy& anatomy = rig.anatomy;
+  const Anatomy& anatomy = rig.anatomy();
   const std::vector<Affine> rest = restGlobals(skeleton), posed = poseGlobals(skeleton, pose);
   std::vector<HeldTarget> feet;
   if (!hasLimbs(anatomy)) return feet;
@@ -59,7 +59,7 @@ std::vector<HeldTarget> heldDuringDrag(const RiggedModel& rig, const Pose& pose,
                                        Index dragged) {
   std::vector<HeldTarget> held;
   for (const HeldTarget& target : targets) {
-    const Part* leg = legOf(rig.anatomy, target.joint);
+    const Part* leg = legOf(rig.anatomy(), target.joint);
     if (!leg || !isInLimbAbove(rig.skeleton(), dragged, target.joint)) {
       held.push_back(target);
     } else if (leg->toes) {

@@ -45,7 +45,7 @@ void drag(Session& session, BeginDrag begin, const Vec3& offset) {
 }
 
 Index part(const Session& session, PartKind kind, Side side) {
-  const Part* found = session.state().rig->anatomy.find(kind, side);
+  const Part* found = session.state().rig->anatomy().find(kind, side);
   return found->end.value_or(found->joints.back());
 }
 
@@ -87,7 +87,7 @@ TEST(StandingFeet, AFootThatIsLiftedStaysInTheAir) {
 
 TEST(StandingFeet, AFootRollsOverItsToesWhereItsKneeIsDragged) {
   Session session = opened("biped");
-  const Part& leg = *session.state().rig->anatomy.find(PartKind::kLeg, Side::kLeft);
+  const Part& leg = *session.state().rig->anatomy().find(PartKind::kLeg, Side::kLeft);
   ASSERT_TRUE(leg.toes && leg.middle);
   const Index toes = *leg.toes, knee = *leg.middle;
   const Vec3 toesBefore = globalOf(session, toes).translation(), kneeBefore = globalOf(session, knee).translation();

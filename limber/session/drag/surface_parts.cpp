@@ -6,7 +6,7 @@ namespace limber {
 
 SurfaceParts surfaceParts(const SessionState& state) {
   const RiggedModel& rig = *state.rig;
-  return riggedParts(*rig.geometry, rig.skeleton(), rig.weights, PartDetail::kLimbs);
+  return riggedParts(rig.geometry(), rig.skeleton(), rig.weights, PartDetail::kLimbs);
 }
 
 }  // namespace limber

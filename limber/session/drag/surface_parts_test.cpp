@@ -33,7 +33,7 @@ TEST(SurfaceParts, AreThoseOfTheSavedModel) {
   const SurfaceParts expected = modelParts(saved, collectGeometry(saved), {}, progress);
   EXPECT_EQ(parts.names, expected.names);
   EXPECT_EQ(parts.partOf, expected.partOf);
-  EXPECT_EQ(parts.partOf.size(), state.rig->geometry->triangles.size());
+  EXPECT_EQ(parts.partOf.size(), state.rig->geometry().triangles.size());
   EXPECT_THAT(parts.names, IsSupersetOf({"leftArm", "rightArm", "leftLeg", "rightLeg"}));
 }
 

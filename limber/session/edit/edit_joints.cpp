@@ -23,9 +23,9 @@ constexpr double kSameScale = 1e-6;
 // Its clips are the session's, which writes them when a file is made.
 Asset documentToEdit(const RiggedModel& model) {
   Asset asset = documentOf(model);
-  settleMovingParents(asset, model.binding);
+  settleMovingParents(asset, model.binding());
   std::vector<bool> moves(asset.document.nodes.size(), false);
-  for (const Index node : model.binding.jointNode) moves[node] = true;
+  for (const Index node : model.binding().jointNode) moves[node] = true;
   removeChannels(asset, [&](Index node, std::string_view path) { return moves[node] && path != "weights"; });
   return asset;
 }
@@ -226,7 +226,7 @@ JointEdit withJoint(const RiggedModel& model, const Pose& pose, Index parent, co
   const Vec3 translation = above.inverse(Eigen::Affine) * position;
   if (!translation.allFinite()) refuse("a joint cannot be there", model.skeleton().joints[parent].name);
   Asset document = documentToEdit(model);
-  addJoint(document, model.binding, parent, translation, name);
+  addJoint(document, model.binding(), parent, translation, name);
   return edited(model, std::move(document));
 }
 
@@ -243,8 +243,8 @@ JointEdit withoutJoint(const RiggedModel& model, Index joint) {
   given->painted = true;
   Asset document = documentToEdit(*given);
   const Geometry geometry = collectGeometry(document);
-  const SkinWeights weights = readWeights(document, geometry, model.binding);
-  removeJoint(document, geometry, model.binding, weights, joint, heir);
+  const SkinWeights weights = readWeights(document, geometry, model.binding());
+  removeJoint(document, geometry, model.binding(), weights, joint, heir);
   return edited(model, std::move(document));
 }
 
@@ -256,7 +256,7 @@ JointEdit withJointOn(const RiggedModel& model, Index joint, Index parent) {
            above);
   }
   Asset document = documentToEdit(model);
-  hangJoint(document, model.binding, joint, parent);
+  hangJoint(document, model.binding(), joint, parent);
   return edited(model, std::move(document));
 }
 

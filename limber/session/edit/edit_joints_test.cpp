@@ -58,13 +58,13 @@ void expectWrittenAsShown(const Session& session) {
     EXPECT_EQ(model->skeleton().joints[j].name, shown.skeleton().joints[j].name);
     EXPECT_EQ(model->skeleton().joints[j].parent, shown.skeleton().joints[j].parent);
   }
-  EXPECT_LT(apart(posedPositions(*model, readNodePose(*model->asset, model->binding)), surfaceOf(session)), 1e-4);
+  EXPECT_LT(apart(posedPositions(*model, readNodePose(model->asset(), model->binding())), surfaceOf(session)), 1e-4);
 }
 
 TEST(EditJoints, EachJointCanBeDeletedInTurn) {
   for (const char* file : {"person.glb", "biped.glb"}) {
     const Session opened = editing(file);
-    const std::vector<Vec3f> rest = opened.state().rig->geometry->positions;
+    const std::vector<Vec3f> rest = opened.state().rig->geometry().positions;
     for (const Joint& joint : jointsOf(opened)) {
       Session session = opened.fork();
       if (!joint.parent) {

@@ -13,7 +13,7 @@ constexpr double kLeastWithImages = 0.8;   // of the joints, for a skeleton that
 
 MirrorPlane planeOfSkeleton(const RiggedModel& rig) {
   const std::vector<Affine> rest = restGlobals(rig.skeleton());
-  const Vec3 left = rig.anatomy.axes.left();
+  const Vec3 left = rig.anatomy().axes.left();
   double offset = 0;
   int roots = 0;
   for (Index j = 0; j < rest.size(); ++j) {
@@ -66,12 +66,12 @@ std::vector<Index> mirrorJoints(const Skeleton& skeleton, const MirrorPlane& pla
 }
 
 RigMirror mirrorOfRig(const RiggedModel& rig, MirrorPlane plane) {
-  if (rig.anatomy.axes.left().dot(plane.normal) < 0) plane = {-plane.normal, -plane.offset};
+  if (rig.anatomy().axes.left().dot(plane.normal) < 0) plane = {-plane.normal, -plane.offset};
   return {plane, mirrorJoints(rig.skeleton(), plane, kMirrorTolerance * longestSide(rig))};
 }
 
 RigMirror mirrorOfRig(const RiggedModel& rig) {
-  if (const std::optional<MirrorMap> map = findMirror({rig.geometry->positions, rig.geometry->triangles})) {
+  if (const std::optional<MirrorMap> map = findMirror({rig.geometry().positions, rig.geometry().triangles})) {
     return mirrorOfRig(rig, map->plane);
   }
   RigMirror mirror = mirrorOfRig(rig, planeOfSkeleton(rig));
@@ -79,7 +79,7 @@ RigMirror mirrorOfRig(const RiggedModel& rig) {
   if (static_cast<double>(without) > (1 - kLeastWithImages) * static_cast<double>(mirror.joints.size())) {
     throw KnownError(
         ErrorKind::kNothingMirrored,
-        {ErrorCode::kUnsupported, "neither the model nor its skeleton is its own mirror image", rig.asset->name});
+        {ErrorCode::kUnsupported, "neither the model nor its skeleton is its own mirror image", rig.asset().name});
   }
   return mirror;
 }

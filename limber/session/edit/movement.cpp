@@ -9,7 +9,7 @@
 
 #include "limber/actions/rig/stand_upright.h"
 #include "limber/character/matching/rest_form.h"
-#include "limber/motion/limbs/body/body_skin.h"
+#include "limber/motion/limbs/body/skin_tube.h"
 #include "limber/motion/retarget/retarget_clip.h"
 #include "limber/motion/retarget/retarget_method.h"
 #include "limber/session/edit/apply_pose.h"
@@ -162,14 +162,14 @@ Clip retargeted(ClipSource& source, const RiggedModel& rig) {
   options.contacts = source.command.contacts;
   options.contactEdits = source.contactEdits;
   options.characterStands = true;
-  options.skin = makeBodySkin(skeleton, rig.geometry->positions, rig.weights);
+  options.skin = makeBodySkin(skeleton, rig.geometry().positions, rig.weights);
   const RetargetMethod& method = findRetargetMethod(source.command.method);
   const Clip& moving = motion.clips[source.clip];
   const double rate = frameRateOf(motion, source.clip);
   ClipWithContacts made =
       retargetClipWithContacts(method, motion.skeleton, moving, skeleton, source.map, options, rate);
   source.feet = std::move(made.feet);
-  return turnClip(std::move(made.clip), skeleton, turnToStand(skeleton));
+  return turnClip(std::move(made.clip), skeleton, turnToStand(rig.character.reading()));
 }
 
 // From its beginning, unless it is shown already.
@@ -281,7 +281,7 @@ void retargetMotion(Movement& movement, const RiggedModel& rig, const RetargetMo
   const Motion& motion = *source.motion;
   source.clip = clipOfMotion(motion, command.clip);
   if (!(command.reach >= 0 && command.reach <= 1)) refuse("the reach is not between 0 and 1");
-  source.map = command.map.empty() ? matchMotion(motion, rig.skeleton())
+  source.map = command.map.empty() ? matchMotion(motion, rig.character.reading())
                                    : skeletonMapFromJson(command.map, motion.skeleton, rig.skeleton());
 
   for (std::size_t c = 0; c < movement.clips.size(); ++c) {
@@ -316,7 +316,7 @@ void joinClips(Movement& movement, const RiggedModel& rig, const JoinClips& comm
         fmt::format("a sequence takes two clips or more{}", removed > 0 ? ", and of its own some were removed" : ""));
   }
   const Skeleton& skeleton = rig.skeleton();
-  const Quat stands = turnToStand(skeleton);
+  const Quat stands = turnToStand(rig.character.reading());
   std::vector<ClipWithContacts> clips;
   for (const std::string& name : names) {
     if (name == command.into) refuse(fmt::format("the clip '{}' cannot be a part of itself", name));

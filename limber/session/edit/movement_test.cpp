@@ -831,13 +831,13 @@ TEST(Movement, ThePoseBecomesTheRestPose) {
   EXPECT_FALSE(sessionState(session)["posed"].get<bool>());
   double furthest = 0;
   for (std::size_t v = 0; v < posed.size(); ++v) {
-    furthest = std::max(furthest, double{(session.state().rig->geometry->positions[v] - posed[v]).norm()});
+    furthest = std::max(furthest, double{(session.state().rig->geometry().positions[v] - posed[v]).norm()});
   }
   EXPECT_LT(furthest, 1e-5);
   // Other handles are made for the new shape.
   act(session, SetHandles{8});
   double lowest = 1e9;
-  for (const Vec3f& p : session.state().rig->geometry->positions) lowest = std::min(lowest, double{p.y()});
+  for (const Vec3f& p : session.state().rig->geometry().positions) lowest = std::min(lowest, double{p.y()});
   EXPECT_NEAR(lowest, 0.5, 0.2);
   act(session, Undo{});
   act(session, Undo{});

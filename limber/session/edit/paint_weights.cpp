@@ -224,9 +224,9 @@ std::optional<SurfaceHit> Brush::hit(const Ray& ray, const std::shared_ptr<const
 }
 
 const PaintSurface& Brush::surface(const RiggedModel& rig) {
-  if (!surface_ || surface_->geometry() != rig.geometry) {
+  if (!surface_ || surface_->geometry().get() != &rig.geometry()) {
     stroke_.reset();
-    surface_ = std::make_unique<PaintSurface>(rig.geometry);
+    surface_ = std::make_unique<PaintSurface>(rig.character.sharedSurface());
   }
   return *surface_;
 }

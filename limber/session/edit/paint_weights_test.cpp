@@ -57,8 +57,8 @@ Index jointOf(const Session& session, const char* name) {
 // A triangle of the surface that this joint moves.
 Index triangleOn(const Session& session, Index joint) {
   const RiggedModel& rig = *session.state().rig;
-  for (Index t = 0; t < rig.geometry->triangles.size(); ++t) {
-    if (weightAt(rig.weights, rig.geometry->triangles[t][0], joint) > 0.5) return t;
+  for (Index t = 0; t < rig.geometry().triangles.size(); ++t) {
+    if (weightAt(rig.weights, rig.geometry().triangles[t][0], joint) > 0.5) return t;
   }
   throw Error(ErrorCode::kBadArgument, "the joint holds nothing");
 }
@@ -125,7 +125,7 @@ TEST(PaintWeights, SeamsGetEqualWeights) {
   Session session = personToPaint();
   carryOut(session, stroke(session, "head", "leftUpperArm"));
   const RiggedModel& rig = *session.state().rig;
-  const PaintSurface surface(rig.geometry);
+  const PaintSurface surface(rig.character.sharedSurface());
   for (Index w = 0; w < surface.distance().mesh().vertexCount(); ++w) {
     for (const Index source : surface.sources(w)) {
       for (Index j = 0; j < rig.skeleton().jointCount(); ++j) {
@@ -158,7 +158,7 @@ TEST(PaintWeights, BothSidesArePaintedAlike) {
   paint.mirrored = true;
   carryOut(session, paint);
   const RiggedModel& rig = *session.state().rig;
-  const PaintSurface surface(rig.geometry);
+  const PaintSurface surface(rig.character.sharedSurface());
   ASSERT_TRUE(surface.mirror());
   const Index left = jointOf(session, "leftUpperArm"), right = jointOf(session, "rightUpperArm");
   double most = 0;
@@ -176,7 +176,7 @@ TEST(PaintWeights, OneSideCanBeTakenForTheOther) {
   carryOut(session, MirrorWeights{MirrorFrom::kLeft});
   const RiggedModel& rig = *session.state().rig;
   expectWhole(rig.weights);
-  const PaintSurface surface(rig.geometry);
+  const PaintSurface surface(rig.character.sharedSurface());
   const RigMirror mirror = mirrorOfRig(rig, surface.mirror()->plane);
   for (Index w = 0; w < surface.mirror()->image.size(); ++w) {
     const Index here = surface.sources(w).front(), there = surface.sources(surface.mirror()->image[w]).front();
@@ -248,7 +248,7 @@ TEST(PaintWeights, ManyStrokesCanBeUndone) {
 TEST(PaintWeights, TheBrushDoesNotReachASheetBehind) {
   const Session session = personToPaint();
   auto rig = std::make_shared<RiggedModel>(*session.state().rig);
-  Geometry both = *rig->geometry;
+  Geometry both = rig->geometry();
   const auto count = static_cast<Index>(both.positions.size());
   const std::size_t triangles = both.triangles.size();
   for (Index v = 0; v < count; ++v) both.positions.push_back(both.positions[v] + Vec3f(0, 0, 0.001f));
@@ -256,12 +256,11 @@ TEST(PaintWeights, TheBrushDoesNotReachASheetBehind) {
     const Triangle corners = both.triangles[t];
     both.triangles.push_back({corners[0] + count, corners[1] + count, corners[2] + count});
   }
-  rig->geometry = std::make_shared<const Geometry>(std::move(both));
   SkinWeights& weights = rig->weights;
   const SkinWeights& own = session.state().rig->weights;
   weights.joints.insert(weights.joints.end(), own.joints.begin(), own.joints.end());
   weights.weights.insert(weights.weights.end(), own.weights.begin(), own.weights.end());
-  const PaintSurface surface(rig->geometry);
+  const PaintSurface surface(std::make_shared<const Geometry>(std::move(both)));
   WeightStroke brush(*rig, surface, std::vector<bool>(rig->skeleton().jointCount(), false),
                      stroke(session, "head", "leftUpperArm"));
   brush.add(stroke(session, "head", "leftUpperArm").dabs);
@@ -300,7 +299,7 @@ TEST(PaintWeights, TheBrushFindsTheSurfaceAsItStands) {
   ASSERT_TRUE(hit);
   const RiggedModel& rig = *session.state().rig;
   const std::vector<Vec3f> posed = posedPositions(rig, session.state().pose);
-  const Triangle& t = rig.geometry->triangles[hit->dab.triangle];
+  const Triangle& t = rig.geometry().triangles[hit->dab.triangle];
   const Vec3 at = (1 - hit->dab.u - hit->dab.v) * posed[t[0]].cast<double>() + hit->dab.u * posed[t[1]].cast<double>() +
                   hit->dab.v * posed[t[2]].cast<double>();
   EXPECT_LT((at - hit->position).norm(), 1e-6);

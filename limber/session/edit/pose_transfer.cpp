@@ -37,9 +37,9 @@ void forEachWeight(const SkinWeights& weights, Index vertex, Visit&& visit) {
 }  // namespace
 
 PoseTransfer::PoseTransfer(const RiggedModel& from, const RiggedModel& to) : from_(from), to_(to) {
-  const Box box = boxOf(from.geometry->positions);
-  if (from.geometry->positions.empty()) return;
-  if (!sameVertices(from.geometry->positions, to.geometry->positions, kRounding * box.longestSide())) return;
+  const Box box = boxOf(from.geometry().positions);
+  if (from.geometry().positions.empty()) return;
+  if (!sameVertices(from.geometry().positions, to.geometry().positions, kRounding * box.longestSide())) return;
   middle_ = box.center();
   patches_.resize(to.skeleton().joints.size());
   gather();
@@ -61,7 +61,7 @@ void PoseTransfer::gather() {
     return patch.shares.back();
   };
   for (Index v = 0; v < to_.weights.vertexCount(); ++v) {
-    const Vec3 place = to_.geometry->positions[v].cast<double>() - middle_;
+    const Vec3 place = to_.geometry().positions[v].cast<double>() - middle_;
     const Mat3 square = place * place.transpose();
     forEachWeight(to_.weights, v, [&](Index joint, double ownWeight) {
       // Squared: a joint follows what it holds, not what it merely touches.

@@ -41,7 +41,7 @@ TEST(TransferPose, MoreAndFewerHandlesKeepWhatCanBeKept) {
     pose.locals[j].rotation = Quat(Eigen::AngleAxisd(0.5, Vec3(1, j % 2 ? 1.0 : -1.0, 0.3).normalized()));
   }
   const std::vector<Vec3f> posed = posedPositions(*from, pose);
-  const double moved = meanDistance(posed, from->geometry->positions);
+  const double moved = meanDistance(posed, from->geometry().positions);
   ASSERT_GT(moved, 0.02);
   for (const Index handles : {14, 30, 60}) {
     const auto to = testing::rigBiped(handles);
@@ -57,7 +57,7 @@ TEST(TransferPose, ShareByShareIsWhatVertexByVertexGives) {
     pose.locals[j].rotation = Quat(Eigen::AngleAxisd(0.7, Vec3(0.2, 1, j % 4 ? -1.0 : 0.5).normalized()));
   }
   const Pose given = transferPose(*from, pose, *to);
-  const std::vector<Vec3f>&bound = to->geometry->positions, posed = posedPositions(*from, pose);
+  const std::vector<Vec3f>&bound = to->geometry().positions, posed = posedPositions(*from, pose);
   const std::vector<Affine> rest = restGlobals(to->skeleton()), globals = poseGlobals(to->skeleton(), given);
   for (Index j = 0; j < to->skeleton().jointCount(); ++j) {
     double weight = 0;

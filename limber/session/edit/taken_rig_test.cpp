@@ -115,7 +115,7 @@ std::vector<std::string> jointNames(const Session& session) {
   return names;
 }
 
-std::optional<ErrorKind> refusalOf(Session& session, const Command& command) {
+std::optional<ErrorKind> refusalKindOf(Session& session, const Command& command) {
   try {
     perform(session, command);
   } catch (const KnownError& error) {
@@ -142,7 +142,7 @@ TEST(TakenRig, AnotherModelsJointsWeightsAndShapesComeOver) {
   EXPECT_EQ(state["own_rig"], true);
   EXPECT_EQ(state["undo"], "transfer_rig");
   EXPECT_LT(state["gaps"]["rms"].get<double>(), 0.5);
-  EXPECT_THAT(testing::documentJson(*rig.asset).dump(), HasSubstr("\"proud\""));
+  EXPECT_THAT(testing::documentJson(rig.asset()).dump(), HasSubstr("\"proud\""));
   perform(session, Undo{});
   EXPECT_EQ(session.exportModel(ExportFormat::kGlb), before);
 }
@@ -203,17 +203,17 @@ TEST(TakenRig, ABodyInSmplsLayoutServesAsAModel) {
 TEST(TakenRig, WhatCannotBeTakenChangesNothing) {
   Session session = openedModel("giant.glb");
   const Bytes before = session.exportModel(ExportFormat::kGlb);
-  EXPECT_EQ(refusalOf(session, TransferRig{"biped.glb"}), ErrorKind::kNoRig);
-  EXPECT_EQ(refusalOf(session, RigFromAnimation{}), ErrorKind::kNoAnimation);
+  EXPECT_EQ(refusalKindOf(session, TransferRig{"biped.glb"}), ErrorKind::kNoRig);
+  EXPECT_EQ(refusalKindOf(session, RigFromAnimation{}), ErrorKind::kNoAnimation);
   EXPECT_THROW(perform(session, TransferRig{"none.glb"}), Error);
   EXPECT_THROW(perform(session, TransferRig{"walk.bvh"}), Error);
   EXPECT_EQ(session.exportModel(ExportFormat::kGlb), before);
   EXPECT_EQ(session.record().size(), 1u);
   Session empty(rigFiles);
-  EXPECT_EQ(refusalOf(empty, TransferRig{"hero.glb"}), ErrorKind::kNoModel);
+  EXPECT_EQ(refusalKindOf(empty, TransferRig{"hero.glb"}), ErrorKind::kNoModel);
   perform(session, BeginDrag{"head", DragMode::kMove, {{0, 2, 5}, {0, 0, -1}}});
-  EXPECT_EQ(refusalOf(session, TransferRig{"hero.glb"}), ErrorKind::kJointDragged);
-  EXPECT_EQ(refusalOf(session, RigFromAnimation{}), ErrorKind::kJointDragged);
+  EXPECT_EQ(refusalKindOf(session, TransferRig{"hero.glb"}), ErrorKind::kJointDragged);
+  EXPECT_EQ(refusalKindOf(session, RigFromAnimation{}), ErrorKind::kJointDragged);
 }
 
 TEST(TakenRig, BonesOfTheAnimationMoveTheSurfaceAsTheFileDoes) {

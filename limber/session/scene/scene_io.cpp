@@ -25,7 +25,7 @@ Bytes sceneGlb(std::span<const SceneMember> members) {
       const SessionState& carrier = member.attachment->to->state();
       part.place = member.attachment->offset;
       part.carrier = {partOf(members, member.attachment->to.get()),
-                      carrier.rig->binding.jointNode[requireJoint(carrier, member.attachment->joint)]};
+                      carrier.rig->binding().jointNode[requireJoint(carrier, member.attachment->joint)]};
     }
     parts.push_back(std::move(part));
   }
@@ -36,7 +36,7 @@ Bytes sceneGlb(std::span<const SceneMember> members) {
 Asset sceneMaterials(std::span<const SceneMember> members) {
   std::vector<AssetPart> parts;
   for (const SceneMember& member : members) {
-    parts.push_back({member.session->state().rig->asset->clone(), member.name, Affine::Identity(), std::nullopt});
+    parts.push_back({member.session->state().rig->asset().clone(), member.name, Affine::Identity(), std::nullopt});
   }
   return mergeAssets(std::move(parts));
 }

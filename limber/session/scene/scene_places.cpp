@@ -32,7 +32,7 @@ Affine toScene(std::span<const SceneMember> members, std::size_t member) {
 
 Box boxOf(const Session& session, const Affine& place) {
   Box box;
-  for (const Vec3f& position : session.state().rig->geometry->positions) box.add(place * position.cast<double>());
+  for (const Vec3f& position : session.state().rig->geometry().positions) box.add(place * position.cast<double>());
   return box;
 }
 

@@ -284,7 +284,7 @@ TEST(SessionScene, OneFileHoldsAllMembers) {
   }
   EXPECT_EQ(found, 1u);
   std::size_t vertices = 0;
-  for (std::size_t m = 0; m < 3; ++m) vertices += stateOf(scene, m).rig->geometry->positions.size();
+  for (std::size_t m = 0; m < 3; ++m) vertices += stateOf(scene, m).rig->geometry().positions.size();
   EXPECT_EQ(geometry.positions.size(), vertices);
 }
 
@@ -342,7 +342,7 @@ TEST(SessionScene, SeveralSurfacesGoIntoOneMesh) {
   SessionScene scene = twoAndAProp();
   const Bytes stl = scene.exportModel(ExportFormat::kStl);
   std::size_t triangles = 0;
-  for (std::size_t m = 0; m < 3; ++m) triangles += stateOf(scene, m).rig->geometry->triangles.size();
+  for (std::size_t m = 0; m < 3; ++m) triangles += stateOf(scene, m).rig->geometry().triangles.size();
   EXPECT_EQ(stl.size(), 84 + 50 * triangles);
   EXPECT_GT(scene.exportModel(ExportFormat::kUsdz).size(), 0u);
 }

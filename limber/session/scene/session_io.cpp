@@ -153,7 +153,7 @@ SessionState startState(std::shared_ptr<const Asset> asset, const std::optional<
   state.skinning = options.skinning;
   state.pins = options.rig.pins;
   state.templateName = options.rig.templateName;
-  state.pose = saved || !own ? state.rig->home : readNodePose(*state.rig->asset, state.rig->binding);
+  state.pose = saved || !own ? state.rig->home : readNodePose(state.rig->asset(), state.rig->binding());
   state.movement = movementOf(state.rig->clips);
   if (saved) restore(state, *saved);
   authored(state);
@@ -165,9 +165,9 @@ Asset posedDocument(const SessionState& state) {
 }
 
 ExportMesh posedMesh(const SessionState& state) {
-  Geometry geometry = *state.rig->geometry;
+  Geometry geometry = state.rig->geometry();
   geometry.positions = posedPositions(*state.rig, state.pose, findDeformer(state.deformer));
-  return exportMesh(*state.rig->asset, geometry);
+  return exportMesh(state.rig->asset(), geometry);
 }
 
 Bytes encodeMesh(const ExportMesh& mesh, const Asset& asset, ExportFormat format) {
@@ -178,12 +178,12 @@ Bytes encodeMesh(const ExportMesh& mesh, const Asset& asset, ExportFormat format
 
 Bytes exportState(const SessionState& state, ExportFormat format) {
   if (format == ExportFormat::kGlb) return writeGlb(posedDocument(state));
-  return encodeMesh(posedMesh(state), *state.rig->asset, format);
+  return encodeMesh(posedMesh(state), state.rig->asset(), format);
 }
 
 Bytes savedState(const SessionState& state) {
   const RiggedModel& rig = *state.rig;
-  Asset asset = keepsRig(state) ? assetWithClips(rig, readNodePose(*rig.asset, rig.binding), basesOf(state.movement))
+  Asset asset = keepsRig(state) ? assetWithClips(rig, readNodePose(rig.asset(), rig.binding()), basesOf(state.movement))
                                 : state.base->clone();
   putSession(asset, savedOf(state));
   return writeGlb(asset);

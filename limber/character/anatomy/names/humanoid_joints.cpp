@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <map>
 
-#include "limber/character/anatomy/body_pieces.h"
 #include "limber/character/anatomy/names/joint_words.h"
 
 namespace limber {
@@ -14,8 +13,8 @@ constexpr double kLikelierThanNot = 0.5;  // probability from which on a bone is
 
 class HumanoidReader {
  public:
-  explicit HumanoidReader(const Skeleton& skeleton)
-      : body_(skeleton), skeleton_(believedSkeleton(skeleton, body_.anatomy)) {}
+  explicit HumanoidReader(const SkeletonReading& reading)
+      : body_(reading.pieces()), skeleton_(believedSkeleton(reading.skeleton(), body_.anatomy)) {}
 
   std::vector<HumanoidJoint> read() {
     for (const HumanoidJoint& declared : declaredJoints(skeleton_)) give(declared.bone, declared.joint, 1);
@@ -77,14 +76,14 @@ class HumanoidReader {
     }
   }
 
-  const BodyPieces body_;
+  const BodyPieces& body_;
   const Skeleton skeleton_;
   std::map<std::string_view, HumanoidJoint> given_;
 };
 
 }  // namespace
 
-std::vector<HumanoidJoint> humanoidJoints(const Skeleton& skeleton) {
+std::vector<HumanoidJoint> humanoidJoints(const SkeletonReading& skeleton) {
   return HumanoidReader(skeleton).read();
 }
 

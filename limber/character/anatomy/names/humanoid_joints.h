@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "limber/character/anatomy/skeleton_reading.h"
 #include "limber/skeleton/humanoid_bones.h"
 
 namespace limber {
@@ -13,6 +14,6 @@ namespace limber {
 // part, or above there what is called so; of the joints from there to the neck the first is the spine, the one half
 // way the chest and the last the upper chest. Legs of bodies with more than two are no people's, nor are wings arms.
 // Bodies without any of it get none. Errors and cost of readAnatomy.
-std::vector<HumanoidJoint> humanoidJoints(const Skeleton& skeleton);
+std::vector<HumanoidJoint> humanoidJoints(const SkeletonReading& skeleton);
 
 }  // namespace limber

@@ -106,7 +106,7 @@ TEST(HumanoidJoints, FingersAreCountedFromTheHand) {
 TEST(HumanoidJoints, AnimalsLegsAndWingsAreNoPeoples) {
   for (const auto& [bone, name] : jointsByBone(dog().skeleton)) EXPECT_EQ(bone.find("Leg"), std::string::npos) << name;
   for (const auto& [bone, name] : jointsByBone(crow().skeleton)) EXPECT_EQ(bone.find("Arm"), std::string::npos) << name;
-  EXPECT_TRUE(humanoidJoints({}).empty());
+  EXPECT_TRUE(humanoidJoints(Skeleton()).empty());
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ bool isBody(PartKind kind) {
 
 ArmClearance::ArmClearance(const RetargetSetup& setup, const RootPlacer& root) : setup_(setup), reach_(setup, root) {
   if (!setup.options.skin || !setup.person || setup.sameBody) return;
-  const Anatomy anatomy = readAnatomy(*setup.target);
+  const Anatomy& anatomy = setup.targetReading.anatomy();
   std::vector<double> thick(setup.target->jointCount(), 0.0);
   for (Index j = 0; j < setup.target->jointCount(); ++j) {
     const std::optional<SkinTube> tube = SkinTube::about(j, *setup.options.skin);

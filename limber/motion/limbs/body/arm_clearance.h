@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "limber/motion/limbs/body/body_skin.h"
+#include "limber/motion/limbs/body/skin_tube.h"
 #include "limber/motion/limbs/limb_reach.h"
 
 namespace limber {

@@ -1,4 +1,4 @@
-// Characters as recipes: a sculpture, where it is fine, and what is painted on it.
+// Models as recipes: a sculpture, where it is fine, and what is painted on it.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ struct SampleMaterial {
   double roughness = 0.7, metallic = 0;
 };
 
-struct Character {
+struct ModelRecipe {
   struct Paint {
     Solid region;
     int material = 0;  // index into materials; what nothing is painted on has material 0
@@ -30,13 +30,13 @@ struct Character {
 };
 
 // Metres, feet on y = 0, facing +Z.
-Character bipedCharacter();
-Character quadrupedCharacter();
-Character wingedCharacter();
-Character theropodCharacter();
-Character stoolCharacter();
-Character footstoolCharacter();
+ModelRecipe bipedCharacter();
+ModelRecipe quadrupedCharacter();
+ModelRecipe wingedCharacter();
+ModelRecipe theropodCharacter();
+ModelRecipe stoolCharacter();
+ModelRecipe footstoolCharacter();
 
-SymmetricMesh buildCharacter(const Character& character);
+SymmetricMesh buildCharacter(const ModelRecipe& character);
 
 }  // namespace limber

@@ -1,13 +1,13 @@
-#include "limber/samples/character.h"
+#include "limber/samples/model_recipe.h"
 
 namespace limber {
 
-SymmetricMesh buildCharacter(const Character& character) {
+SymmetricMesh buildCharacter(const ModelRecipe& character) {
   Sculpture shape = character.shape;
   shape.prepare();
   HalfMesh half = polygonize(shape, character.cube);
   remesh(half, shape, character.edge, character.details);
-  for (const Character::Paint& layer : character.paints) paint(half, shape, layer.region, layer.material);
+  for (const ModelRecipe::Paint& layer : character.paints) paint(half, shape, layer.region, layer.material);
   return mirrorHalf(half, shape);
 }
 

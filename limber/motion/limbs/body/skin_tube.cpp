@@ -1,17 +1,15 @@
-#include "limber/motion/limbs/body/body_skin.h"
+#include "limber/motion/limbs/body/skin_tube.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "limber/character/matching/plain_skeleton.h"
 #include "limber/core/text/numbers.h"
 
 namespace limber {
 
 namespace {
 
-constexpr std::size_t kMostSamples = 6000;
 constexpr std::size_t kLeastSamples = 12;  // of a joint
 // Of a sector: the skin of a limb that was made regular lies on no edge between two, where the last bit of an angle,
 // which compilers' libraries give differently, would tell to which it belongs.
@@ -19,27 +17,6 @@ constexpr double kOffEdges = 0.13;
 constexpr double kOutermost = 0.9;  // of the samples of one side, the share within its radius
 
 }  // namespace
-
-std::shared_ptr<const BodySkin> makeBodySkin(const Skeleton& skeleton, std::span<const Vec3f> bound,
-                                             const SkinWeights& weights) {
-  BodySkin skin;
-  // As bodies are posed: without mirrored joints.
-  const PlainSkeleton plain(skeleton);
-  const std::vector<Affine> globals = restGlobals(plain.skeleton());
-  std::vector<Mat3> toJoint;
-  for (const Affine& global : globals) toJoint.push_back(global.rotation().transpose());
-  const std::size_t step = (bound.size() + kMostSamples - 1) / kMostSamples;
-  for (std::size_t v = 0; v < bound.size(); v += step) {
-    const auto joints = weights.jointsOf(static_cast<Index>(v));
-    const auto shares = weights.weightsOf(static_cast<Index>(v));
-    const auto most = std::max_element(shares.begin(), shares.end());
-    if (most == shares.end() || !(*most > 0)) continue;
-    const Index joint = joints[static_cast<std::size_t>(most - shares.begin())];
-    skin.joints.push_back(joint);
-    skin.places.push_back(toJoint[joint] * (bound[v].cast<double>() - globals[joint].translation()));
-  }
-  return std::make_shared<const BodySkin>(std::move(skin));
-}
 
 std::optional<SkinTube> SkinTube::about(Index joint, const BodySkin& skin) {
   std::vector<Vec3> places;

@@ -2,22 +2,13 @@
 #pragma once
 
 #include <array>
-#include <memory>
 #include <optional>
-#include <span>
 #include <vector>
 
+#include "limber/character/matching/body_skin.h"
 #include "limber/character/matching/retarget_setup.h"
-#include "limber/skeleton/skin_weights.h"
 
 namespace limber {
-
-// A character's skin, each sample where the joint that moves it most carries it. Evenly chosen in the order of the
-// vertices, a few thousand.
-//
-// bound  #V positions in the pose in which the skeleton rests, metres
-std::shared_ptr<const BodySkin> makeBodySkin(const Skeleton& skeleton, std::span<const Vec3f> bound,
-                                             const SkinWeights& weights);
 
 // The skin that one joint carries, as a radius about an axis: by how far along it and by the angle about it.
 class SkinTube {

@@ -1,0 +1,28 @@
+// A skeleton and what is read from it at rest, each reading made when it is first asked for and kept.
+#pragma once
+
+#include <memory>
+
+#include "limber/character/anatomy/body_pieces.h"
+
+namespace limber {
+
+// Immutable, cheap to copy (copies share the readings), safe across threads.
+class SkeletonReading {
+ public:
+  // A copy of the skeleton. Implicit: a skeleton is a reading of which nothing is made yet.
+  SkeletonReading(const Skeleton& skeleton);
+
+  const Skeleton& skeleton() const;
+  // Has `other` the same joints, bit for bit in names, parents and rest pose?
+  bool isOf(const Skeleton& other) const;
+  // readAnatomy of the rest pose; throws Error as it does.
+  const Anatomy& anatomy() const;
+  const BodyPieces& pieces() const;
+
+ private:
+  struct Readings;
+  std::shared_ptr<const Readings> readings_;
+};
+
+}  // namespace limber

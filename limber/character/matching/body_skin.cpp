@@ -1,0 +1,38 @@
+#include "limber/character/matching/body_skin.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "limber/character/matching/plain_skeleton.h"
+#include "limber/skeleton/pose.h"
+
+namespace limber {
+
+namespace {
+
+constexpr std::size_t kMostSamples = 6000;
+
+}  // namespace
+
+std::shared_ptr<const BodySkin> makeBodySkin(const Skeleton& skeleton, std::span<const Vec3f> bound,
+                                             const SkinWeights& weights) {
+  BodySkin skin;
+  // As bodies are posed: without mirrored joints.
+  const PlainSkeleton plain(skeleton);
+  const std::vector<Affine> globals = restGlobals(plain.skeleton());
+  std::vector<Mat3> toJoint;
+  for (const Affine& global : globals) toJoint.push_back(global.rotation().transpose());
+  const std::size_t step = (bound.size() + kMostSamples - 1) / kMostSamples;
+  for (std::size_t v = 0; v < bound.size(); v += step) {
+    const auto joints = weights.jointsOf(static_cast<Index>(v));
+    const auto shares = weights.weightsOf(static_cast<Index>(v));
+    const auto most = std::max_element(shares.begin(), shares.end());
+    if (most == shares.end() || !(*most > 0)) continue;
+    const Index joint = joints[static_cast<std::size_t>(most - shares.begin())];
+    skin.joints.push_back(joint);
+    skin.places.push_back(toJoint[joint] * (bound[v].cast<double>() - globals[joint].translation()));
+  }
+  return std::make_shared<const BodySkin>(std::move(skin));
+}
+
+}  // namespace limber
