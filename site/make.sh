@@ -20,6 +20,9 @@ sed -i -E 's#\(\.\./README\.md#(index.md#g' $work/docs/*.md
 for page in $work/docs/*.md; do
   sed -i -E 's#\[([^]]*)\]\((\.\./[^)]*|adapters|data/[^)]*|examples/[^)]*|bindings/[^)]*|[A-Z]+(\.md)?)\)#\1#g' "$page"
 done
+# In the pages of algorithms, which lie one folder deeper, links to other pages and pictures begin with ../, those to sources with ../../.
+sed -i -E -e 's#\(\.\./\.\./README\.md#(../index.md#g' -e 's#\(\.\./README\.md#(../pages.md#g' \
+  -e 's#\[([^]]*)\]\(\.\./\.\./[^)]*\)#\1#g' $work/docs/algorithms/*.md
 mkdocs build --quiet -f site/mkdocs.yml
 cp -r $work/api $work/html/api
 echo "The site is in $work/html"

@@ -1,4 +1,4 @@
-// Runs every command of README.md, docs/*.md and the examples of each command's --help as they are written.
+// Runs every command of README.md, docs/*.md, docs/algorithms/*.md and the examples of each command's --help as they are written.
 //
 //   node tests/manual_commands.mjs PROGRAM OUTPUT_FOLDER [--only PAGE] [--verbose]
 //
@@ -177,7 +177,8 @@ const made = await runPage(readme, []);
 const samples = kSamples.map((name) => join(made, name));
 for (const file of samples) if (!existsSync(file)) fail(`README.md does not make ${basename(file)}`);
 if (failed === 0 || only) {
-  const pages = readdirSync(join(root, 'docs')).filter((name) => name.endsWith('.md')).map((name) => pageOf(`docs/${name}`));
+  const pages = ['docs', 'docs/algorithms'].flatMap((folder) => readdirSync(join(root, folder))
+    .filter((name) => name.endsWith('.md')).map((name) => pageOf(`${folder}/${name}`)));
   const first = helpOf(['sample']), others = helpOf([]).below.filter((name) => name !== 'sample').map((name) => helpOf([name]));
   const folder = await runPage(first, samples);
   const models = readdirSync(folder).filter((name) => /\.(glb|bvh)$/.test(name)).map((name) => join(folder, name));

@@ -53,6 +53,9 @@ for deformer in linear-blend dual-quaternion delta-mush direct-delta-mush; do
   $limber preview $work/biped_bent.glb --deformer $deformer --view 20,20 --size 400x400 -o $images/deform_$deformer.png --quiet
 done
 
+# What the pages of algorithms show besides.
+tools/algorithm_pictures.sh $limber
+
 # The page, where its parts are built (./dev studio) and there is a browser to draw it.
 if [ -f dist/index.html ] && command -v chromium >/dev/null; then
   export LIMBER_PIXEL_DENSITY=1

@@ -53,6 +53,7 @@ mkdir -p "$manual"/{man/man1,bash-completion/completions,zsh/vendor-completions,
 notices "$manual/doc/limber" program
 mkdir -p "$manual/doc/limber/docs"
 cp docs/*.md docs/*.json "$manual/doc/limber/docs" # the pages that --help names
+cp -r docs/algorithms "$manual/doc/limber/docs"
 notices "$build/manual/development/doc/liblimber-dev" library
 manual_page limber
 for command in $(commands_of); do
