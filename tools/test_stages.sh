@@ -12,10 +12,12 @@ add_counts() {
 
 summary() { echo "$total_passed passed, $total_failed failed, $total_skipped skipped"; }
 
-# stage <title> <function> [argument...]: runs it, prints how long it took; where it fails, sums up and exits.
+# stage <title> <function> [argument...]: runs it, prints how long it took; where it fails, sums up and exits. Where the
+# stages are listed it prints the title alone, as stages_at_once does.
 stage() {
   local title=$1 started=$SECONDS
   shift
+  if [ -n "$listing" ]; then echo "$title"; return; fi
   echo "== $title"
   if ! "$@"; then
     [ $total_failed -gt 0 ] || total_failed=1
@@ -29,7 +31,7 @@ stage() {
 # minutes_left_for <minutes> <what>: whether stages that take so long on two processors with nothing compiled before may
 # still begin within LIMBER_TEST_MINUTES, where that is set; else they are skipped, and the run says so.
 minutes_left_for() {
-  [ -n "${LIMBER_TEST_MINUTES:-}" ] || return 0
+  [ -n "${LIMBER_TEST_MINUTES:-}" ] && [ -z "$listing" ] || return 0
   [ $((SECONDS / 60 + $1)) -gt "$LIMBER_TEST_MINUTES" ] || return 0
   echo "== $2: skipped, $((SECONDS / 60)) of $LIMBER_TEST_MINUTES minutes are used and they take up to $1"
   add_counts 0 0 1
@@ -41,6 +43,7 @@ minutes_left_for() {
 # order. Where one fails all others come to their end before it sums up and exits.
 stages_at_once() {
   local logs=$PWD/$output/stages failed= name title counts
+  if [ -n "$listing" ]; then cut -d ' ' -f 2-; return; fi
   local -A titles=() names=()
   rm -rf "$logs"
   mkdir -p "$logs"
@@ -359,9 +362,12 @@ install_and_use() {
   counted examples/run.sh "$output/examples" build/release/limber "$output/example_files"
 }
 
+# For all stages everything; else the program and the tests that are run.
 build_release() {
-  configure release -DLIMBER_TESTS=ON -DLIMBER_BENCH=ON -DLIMBER_STUDIO=OFF -DLIMBER_PYTHON="$([ -n "$quick" ] && echo OFF || echo ON)" &&
-    compile release
+  local more=OFF targets=(limber limber_unit_tests)
+  [ -z "$quick" ] || targets+=(limber_model_tests)
+  [ -z "$all" ] || more=ON targets=()
+  configure release -DLIMBER_TESTS=ON -DLIMBER_BENCH=$more -DLIMBER_STUDIO=OFF -DLIMBER_PYTHON=$more && compile release "${targets[@]}"
 }
 
 wasm_smoke() {
@@ -369,19 +375,33 @@ wasm_smoke() {
     counted node tests/wasm_smoke.mjs build/wasm build/release/limber "$output/biped.glb" "$output/wasm"
 }
 
-# The page in a browser: skipped where there is none to be had.
-studio_in_browser() {
+# Whether there is a browser for the page; else the stage is skipped.
+has_chromium() {
   need "${packages_browser[@]}" >/dev/null 2>&1 || true
-  if ! command -v chromium >/dev/null; then
-    echo "   no chromium here: the page is built, and not tried"
-    add_counts 0 0 1
-    return 0
-  fi
-  local faulty
-  faulty=$(shared_data)/broken || faulty=
+  command -v chromium >/dev/null && return 0
+  echo "   no chromium here: the page is built, and not tried"
+  add_counts 0 0 1
+  return 1
+}
+
+studio_in_browser() {
+  has_chromium || return 0
   # By the clock, so with nothing beside it.
   counted_or_again node apps/studio/tests/kill_test.mjs dist $output/studio || return 1
-  counted_at_once <<TESTS
+  counted_at_once < <(browser_tests)
+}
+
+# A model opened, rigged, dragged, put in motion, exported; on a phone, in augmented reality. CONTRIBUTING.md names them.
+studio_main_tests() {
+  has_chromium || return 0
+  counted_at_once < <(browser_tests | grep -E '/(studio|rigs|pose|sequence|save|ar)_test\.mjs ')
+}
+
+# Their commands, one a line.
+browser_tests() {
+  local faulty
+  faulty=$(shared_data)/broken || faulty=
+  cat <<TESTS
 node apps/studio/tests/studio_test.mjs dist build/release/limber $output/studio $faulty
 node apps/studio/tests/beside_test.mjs dist $output/studio
 node apps/studio/tests/keep_test.mjs dist build/release/limber $output/studio
@@ -545,34 +565,56 @@ fuzz_seeds() {
 . tools/studio.sh
 
 run_tests() {
-  local quick= sanitize= blender=
+  local quick= all= sanitize= blender= listing=
   for option in "$@"; do
     case $option in
       --quick) quick=yes ;;
+      --all) all=yes ;;
       --sanitize) sanitize=yes ;;
       --blender) blender=yes ;;
-      *) echo "test knows --quick, --sanitize and --blender, not $option" >&2; exit 2 ;;
+      --list) listing=yes ;;
+      *) echo "test knows --quick, --all, --sanitize, --blender and --list, not $option" >&2; exit 2 ;;
     esac
   done
+  if [ -n "$listing" ]; then all_stages; return; fi
   rm -rf $output
   mkdir -p $output
-  if [ -n "$sanitize" ]; then sanitize_stages; else release_stages; fi
-  if [ -n "$blender" ]; then stage "motions in Blender" motions_in_blender; fi
-  if [ -z "$sanitize$quick" ]; then remaining_stages; fi
+  all_stages
+  if [ -z "$sanitize$all" ]; then
+    echo "== Not run, ./dev test --all has it:"
+    listing=yes all_stages >$output/stages_run
+    all=yes quick= listing=yes all_stages | grep -vxFf $output/stages_run | sed 's/^/   /'
+  fi
   summary
 }
 
+all_stages() {
+  if [ -n "$sanitize" ]; then sanitize_stages; else release_stages; fi
+  if [ -n "$blender" ]; then stage "motions in Blender" motions_in_blender; fi
+  if [ -n "$sanitize$quick" ]; then return; fi
+  if [ -n "$all" ]; then remaining_stages; else change_stages; fi
+}
+
 release_stages() {
-  if [ -n "$quick" ]; then
-    stage "packages" need "${packages_tests[@]}"
-  else
-    stage "packages" need $(printf '%s\n' "${packages_bench[@]}" "${packages_sanitize[@]}" "${packages_wasm[@]}" \
-      "${packages_node[@]}" "${packages_python[@]}" | LC_ALL=C sort -u)
-  fi
+  local packages=("${packages_tests[@]}")
+  [ -n "$quick" ] || packages+=("${packages_wasm[@]}" "${packages_node[@]}")
+  [ -z "$all" ] || packages+=("${packages_bench[@]}" "${packages_sanitize[@]}" "${packages_python[@]}")
+  stage "packages" need $(printf '%s\n' "${packages[@]}" | LC_ALL=C sort -u)
   stage "release build, g++ with warnings as errors" build_release
   stage "types of one name" check "two types of one name (tests/type_names.sh)" tests/type_names.sh
   stage "unit tests" unit_tests release
   if [ -n "$quick" ]; then stage "the project's own samples" model_tests release '^(?!.*Samples)'; fi
+}
+
+# What every change needs beside that.
+change_stages() {
+  stage "WebAssembly build" build_wasm
+  stages_at_once <<'STAGES'
+wasm_smoke WebAssembly in Node against the native program
+STAGES
+  stage "studio: types, bundle" build_studio
+  stage "studio in a browser: main tests" studio_main_tests
+  stage "glTF validator over every file written" validate_written_files
 }
 
 # slow_tests <folder of logs>: a regex of the tests that took long there, but for the quickest of each suite where that
@@ -585,8 +627,8 @@ slow_tests() {
 }
 
 remaining_stages() {
-  local slow
-  slow=$(slow_tests $output/programs)
+  local slow=
+  [ -n "$listing" ] || slow=$(slow_tests $output/programs)
   stage "every model, every count of handles" model_tests release
   stage "faulty files, through the program" broken_files
   stage "commands of the manual and of --help, as they are written" manual_commands
@@ -628,7 +670,9 @@ sanitized_stages() {
   # All other models, and templates, take minutes there.
   LIMBER_MATRIX_HANDLES=10 LIMBER_MATRIX_FRAMES=60 stage "the project's own samples at 10 handles under sanitizers" \
     model_tests sanitize '^(?!.*Samples)|Template|MatchedByTheirForm'
-  stage "fuzz targets, a few seconds each" fuzz_each_target 5
+  # Within a bound no more than a look; else for minutes.
+  local seconds=${LIMBER_TEST_MINUTES:+5}
+  stage "fuzz targets, ${seconds:-120} s each" fuzz_each_target "${seconds:-120}"
 }
 
 sanitize_stages() {
