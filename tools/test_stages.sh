@@ -375,6 +375,13 @@ wasm_smoke() {
     counted node tests/wasm_smoke.mjs build/wasm build/release/limber "$output/biped.glb" "$output/wasm"
 }
 
+result_hashes() {
+  local status=0
+  counted node tests/result_hashes.mjs build/release/limber "$output/results" build/wasm || status=1
+  [ $status -ne 0 ] || grep '^   ' "$output/counted_$BASHPID.log"
+  return $status
+}
+
 # Whether there is a browser for the page; else the stage is skipped.
 has_chromium() {
   need "${packages_browser[@]}" >/dev/null 2>&1 || true
@@ -611,6 +618,7 @@ change_stages() {
   stage "WebAssembly build" build_wasm
   stages_at_once <<'STAGES'
 wasm_smoke WebAssembly in Node against the native program
+result_hashes main results by their hashes, natively and as WebAssembly
 STAGES
   stage "studio: types, bundle" build_studio
   stage "studio in a browser: main tests" studio_main_tests
@@ -638,6 +646,7 @@ remaining_stages() {
   stage "WebAssembly build" build_wasm
   stages_at_once <<'STAGES'
 wasm_smoke WebAssembly in Node against the native program
+result_hashes main results by their hashes, natively and as WebAssembly
 python_module module for Python
 surfaces_in_three USD in three.js
 avatars_in_three VRM in three-vrm
