@@ -16,6 +16,7 @@ namespace limber {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
@@ -170,6 +171,20 @@ TEST_F(Cli, ARiggedModelIsRefusedWithBothWaysOut) {
     return nlohmann::json::parse(run({"info", file, "--json"}).out).at("joint_names");
   };
   EXPECT_EQ(names("kept.glb"), names("rigged.glb"));
+}
+
+// The numbers of a T-pose, on a model in A-pose.
+TEST_F(Cli, APinOutsideTheSurfaceIsReported) {
+  ASSERT_EQ(run({"sample", "biped", "-o", "person.glb", "-q"}).code, 0);
+  const Result wrong = run({"rig", "person.glb", "--template", "humanoid", "--pin", "leftHand=0.71,1.43,0.02", "--pin",
+                            "head=0,1.48,-0.03", "-o", "wrong.glb"});
+  EXPECT_EQ(wrong.code, 0) << wrong.error;
+  EXPECT_THAT(wrong.error,
+              ContainsRegex("warning: pin leftHand is 0\\.3[0-9]* m outside the surface \\[pins-outside\\]"));
+  const Result right = run({"rig", "person.glb", "--template", "humanoid", "--pin", "leftHand=0.55,1.04,0", "--pin",
+                            "head=0,1.48,-0.03", "-o", "right.glb"});
+  EXPECT_EQ(right.code, 0) << right.error;
+  EXPECT_THAT(right.error, Not(HasSubstr("pins-outside")));
 }
 
 TEST_F(Cli, BadInputIsOneLineAndLeavesNoFile) {

@@ -14,6 +14,7 @@
 #include "limber/actions/rig/figure_to_rig.h"
 #include "limber/actions/rig/hanging_chains.h"
 #include "limber/actions/rig/left_out_weights.h"
+#include "limber/actions/rig/pins_outside.h"
 #include "limber/actions/rig/stand_upright.h"
 #include "limber/core/known_error.h"
 #include "limber/document/rig/rig_io.h"
@@ -199,6 +200,7 @@ Rigged makeRig(const Asset& asset, const FigureToRig& input, const AutoRigOption
     if (sure) result.up = rig.up;
     if (!sure && rig.up && confidence > kLikelyTemplate) warnMaybeLies(*rig.up, confidence, report.warnings);
     result.made = toWorld(std::move(rig.skeleton), frame);
+    warnPinsOutside(prepared, options.rig.pins, report.warnings);
   }
 
   progress.stage("skin");
