@@ -9,6 +9,7 @@
 #include "command.h"
 #include "fbx_arguments.h"
 #include "limber/actions/export/write_model.h"
+#include "limber/character/anatomy/body_size.h"
 #include "limber/character/anatomy/skeleton_mirror.h"
 #include "limber/core/counted.h"
 #include "limber/core/text/names.h"
@@ -369,6 +370,7 @@ void addConvertCommand(CLI::App& program) {
   command
       ->add_option("FILES", options->files,
                    "motions over one skeleton (BVH, SMPL's .npz, GLB, glTF, VRM, VRMA, FBX, DAE); the last is the "
+  warnUnlikelySize(*motion, motion->warnings);
                    "output unless -o names it")
       ->required();
   command->add_option("-o,--output", options->output, "a .bvh or .vrma, or " + modelOutputHelp())->type_name("FILE");

@@ -17,7 +17,7 @@ namespace {
 
 struct InfoArguments {
   std::string input;
-  bool json = false, conventions = false;
+  bool json = false, joints = false, conventions = false;
 };
 
 Json vectorJson(const Vec3& v) {
@@ -31,6 +31,10 @@ Json weightsJson(const SkinWeightInfo& weights) {
           {"max", weights.greatest},
           {"largest_sum_error", weights.largestSumError},
           {"most_influences", weights.mostInfluences}};
+}
+
+Json sizeJson(const BodySize& size) {
+  return {{"height", size.height}, {"hips", size.hips ? Json(*size.hips) : Json()}};
 }
 
 Json anatomyJson(const Anatomy& anatomy, const std::vector<std::string>& names) {
@@ -93,6 +97,9 @@ Json infoJson(const std::string& file, const AssetInfo& info) {
   json["skins"] = info.skins;
   json["joints"] = info.joints.size();
   json["joint_names"] = info.joints;
+  json["joint_positions"] = Json::array();
+  for (const Vec3& position : info.jointPositions) json["joint_positions"].push_back(vectorJson(position));
+  json["skeleton_size"] = info.bodySize ? sizeJson(*info.bodySize) : Json();
   json["anatomy"] = info.anatomy ? anatomyJson(*info.anatomy, info.joints) : Json();
   json["weights"] = info.weights ? weightsJson(*info.weights) : Json();
   json["clips"] = Json::array();
@@ -160,9 +167,29 @@ void printAnatomy(const Anatomy& anatomy, const std::vector<std::string>& names)
   if (!attached.empty()) printField("", fmt::format("attachments: {}", joinNames(attached)));
 }
 
-void printRig(const AssetInfo& info) {
+void printSkeletonSize(const BodySize& size) {
+  const std::string hips = size.hips ? fmt::format(", hips at {:.4g} m", *size.hips) : "";
+  printField("skeleton", fmt::format("{:.4g} m high from the lowest joint to the highest{}", size.height, hips));
+}
+
+// One line a joint.
+void printPositions(const AssetInfo& info) {
+  printField("", "positions in rest pose, in metres: x, y, z");
+  for (std::size_t j = 0; j < info.joints.size(); ++j) {
+    const Vec3& position = info.jointPositions[j];
+    printField(
+        "", fmt::format("{:<24} {:10.5f} {:10.5f} {:10.5f}", info.joints[j], position.x(), position.y(), position.z()));
+  }
+}
+
+void printRig(const AssetInfo& info, bool withPositions) {
   printField("joints", fmt::to_string(info.joints.size()));
-  if (!info.joints.empty()) printField("", joinNames(info.joints));
+  if (withPositions && !info.joints.empty()) {
+    printPositions(info);
+  } else if (!info.joints.empty()) {
+    printField("", joinNames(info.joints));
+  }
+  if (info.bodySize) printSkeletonSize(*info.bodySize);
   if (info.anatomy) printAnatomy(*info.anatomy, info.joints);
   if (!info.weights) return;
   const SkinWeightInfo& weights = *info.weights;
@@ -172,7 +199,7 @@ void printRig(const AssetInfo& info) {
   printField("without weights", counted(weights.withoutWeights, "vertex", "vertices"));
 }
 
-void print(const std::string& file, const AssetInfo& info) {
+void print(const std::string& file, const AssetInfo& info, bool withPositions) {
   printField("file", file);
   printField("format", info.format);
   std::string vertices = fmt::to_string(info.storedVertices);
@@ -183,7 +210,7 @@ void print(const std::string& file, const AssetInfo& info) {
                                    counted(info.nodes, "node")));
   printField("materials", fmt::format("{}, {}, {}", info.materials, counted(info.textures, "texture"),
                                       counted(info.images, "image")));
-  printRig(info);
+  printRig(info, withPositions);
   printField("clips", fmt::to_string(info.clips.size()));
   for (const ClipInfo& clip : info.clips) {
     printField("", fmt::format("{}: {:.3f} s, {}", clip.name.empty() ? "(no name)" : clip.name, clip.seconds,
@@ -219,7 +246,7 @@ void run(const InfoArguments& options) {
   if (options.json) {
     fmt::print("{}\n", dumpReport(infoJson(options.input, info)));
   } else {
-    print(options.input, info);
+    print(options.input, info, options.joints);
   }
 }
 
@@ -230,12 +257,14 @@ void addInfoCommand(CLI::App& program) {
   CLI::App* command = program.add_subcommand("info", "Tell what is in a file");
   command->add_option("FILE", options->input, "the file; - is standard input");
   command->add_flag("--json", options->json, "print JSON");
+  command->add_flag("--joints", options->joints,
+                    "a line for each joint with its position in rest pose, as rig --pin takes it (--json has them)");
   command->add_flag("--conventions", options->conventions,
                     "print the naming conventions whose joints are known for certain, as a table in Markdown");
   command->footer(
       "Pieces and watertightness are counted after vertices at equal positions are merged; watertight means that\n"
       "every edge has exactly two triangles.\n"
-      "\nExample:\n  limber info dragon.glb --json");
+      "\nExamples:\n  limber info dragon.glb --json\n  limber info hero.glb --joints\n  limber info walk.bvh");
   command->callback([options] { run(*options); });
 }
 

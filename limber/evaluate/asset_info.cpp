@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "limber/character/character.h"
+#include "limber/document/clip/motion_io.h"
 #include "limber/document/gltf/accessor.h"
 #include "limber/document/rig/rest_pose.h"
 #include "limber/document/rig/rig_io.h"
@@ -108,6 +109,20 @@ std::vector<ClipInfo> inspectClips(const Asset& asset) {
   return clips;
 }
 
+// Clips are read only where the size of the rest pose is unlikely: reading them may fail where all else is right.
+void inspectSize(const Asset& asset, const AssetSkeleton& skeleton, Warnings& warnings) {
+  Warnings found;
+  warnUnlikelySize(skeleton.skeleton, found);
+  if (found.empty()) return;
+  try {
+    const Motion motion = motionOf(asset, skeleton);
+    found = {};
+    warnUnlikelySize(motion, found);
+  } catch (const Error&) {  // the rest pose alone counts
+  }
+  warnings.append(found);
+}
+
 // The geometry of the scene; empty where it has no triangle.
 Geometry sceneGeometry(const Asset& asset) {
   try {
@@ -147,8 +162,12 @@ AssetInfo inspectAsset(const Asset& asset) {
   if (!geometry.triangles.empty()) info.surface = inspectSurface(geometry);
   if (!document.skins.empty()) {  // a motion has a skin that no mesh wears
     const Character character(asset);
-    for (const Joint& joint : character.binding().skeleton.joints) info.joints.push_back(joint.name);
-    info.anatomy = SkeletonReading(character.binding().skeleton).anatomy();
+    const Skeleton& skeleton = character.binding().skeleton;
+    for (const Joint& joint : skeleton.joints) info.joints.push_back(joint.name);
+    info.jointPositions = restPositions(skeleton);
+    info.anatomy = SkeletonReading(skeleton).anatomy();
+    info.bodySize = bodySize(skeleton, restPose(skeleton), *info.anatomy);
+    inspectSize(asset, character.binding(), info.warnings);
     if (hasRig(asset)) info.weights = inspectWeights(readWeights(asset, geometry, character.binding()));
   }
   return info;

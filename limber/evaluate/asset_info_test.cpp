@@ -1,11 +1,16 @@
 #include "limber/evaluate/asset_info.h"
 
+#include <algorithm>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "limber/character/anatomy/testing/bodies.h"
+#include "limber/document/clip/motion_io.h"
 #include "limber/document/gltf/accessor.h"
 #include "limber/document/testing/two_bind_poses.h"
+#include "warning_kinds.h"
 
 namespace limber {
 namespace {
@@ -102,6 +107,23 @@ TEST(InspectAsset, ReadsWeightsAsStored) {
   EXPECT_FLOAT_EQ(info.weights->greatest, 1.0f);
   EXPECT_NEAR(info.weights->largestSumError, 0.25, 1e-9);
   EXPECT_EQ(info.weights->mostInfluences, 2u);
+}
+
+// A person of VRM's names as a motion file has it: a skeleton without a mesh.
+TEST(InspectAsset, MeasuresASkeletonInItsRestPose) {
+  for (const double factor : {1.0, 0.01}) {
+    Motion motion;
+    motion.skeleton = testing::vrmPerson();
+    for (Joint& joint : motion.skeleton.joints) joint.rest.translation *= factor;
+    const AssetInfo info = inspectAsset(motionAsset(motion));
+    ASSERT_TRUE(info.bodySize);
+    EXPECT_NEAR(info.bodySize->height, 1.495 * factor, 1e-6);  // from the toes to the head
+    EXPECT_NEAR(info.bodySize->hips.value(), 0.925 * factor, 1e-6);
+    ASSERT_EQ(info.jointPositions.size(), info.joints.size());
+    const auto hand = std::find(info.joints.begin(), info.joints.end(), "leftHand") - info.joints.begin();
+    EXPECT_LT((info.jointPositions.at(static_cast<std::size_t>(hand)) - factor * Vec3(0.68, 1.4, 0)).norm(), 1e-6);
+    EXPECT_EQ(testing::countOf(info.warnings, "unlikely-size"), factor == 1 ? 0u : 1u);
+  }
 }
 
 TEST(InspectAsset, ReadsClips) {

@@ -16,6 +16,7 @@
 #include "limber/actions/rig/left_out_weights.h"
 #include "limber/actions/rig/pins_outside.h"
 #include "limber/actions/rig/stand_upright.h"
+#include "limber/character/anatomy/body_size.h"
 #include "limber/core/known_error.h"
 #include "limber/document/rig/rig_io.h"
 #include "limber/document/scene/geometry.h"
@@ -199,8 +200,9 @@ Rigged makeRig(const Asset& asset, const FigureToRig& input, const AutoRigOption
     const bool sure = options.rig.up || confidence > kSureTemplate;
     if (sure) result.up = rig.up;
     if (!sure && rig.up && confidence > kLikelyTemplate) warnMaybeLies(*rig.up, confidence, report.warnings);
-    result.made = toWorld(std::move(rig.skeleton), frame);
     warnPinsOutside(prepared, options.rig.pins, report.warnings);
+    result.made = toWorld(std::move(rig.skeleton), frame);
+    if (confidence > kLikelyTemplate && !rig.isAbstained) warnUnlikelySize(*result.made, report.warnings);
   }
 
   progress.stage("skin");

@@ -126,6 +126,8 @@ const warnings: Named = {
   'extrapolated-curves': 'curves that go on beyond their keys (cycles, slopes) stand still there',
   'removed-clips': 'clips that were removed are left out of the sequence',
   'second-root': 'the skeleton gets a root joint above its own',
+  'pins-outside': 'joints were given positions far outside the surface',
+  'unlikely-size': 'the body is hardly as small or as large as it is here: its unit of length may be another',
   'root-weights': 'vertices follow the root joint in part',
   'bad-weights': 'weights that are no numbers, or negative, count as none',
   'unweighted-vertices': 'vertices follow no joint',

@@ -676,6 +676,8 @@ export const german = {
   'neither the model nor its skeleton is its own mirror image': 'weder das Modell noch sein Skelett ist spiegelgleich',
   'no clip is chosen': 'es ist kein Clip gewählt',
   'limbs of the skeleton have no place in the model': 'Glieder des Skeletts haben keinen Platz im Modell',
+  'joints were given positions far outside the surface': 'Gelenke bekamen Positionen weit außerhalb der Oberfläche',
+  'the body is hardly as small or as large as it is here: its unit of length may be another': 'der Körper ist kaum so klein oder so groß wie hier: vielleicht ist seine Längeneinheit eine andere',
   'the model hardly looks like the skeleton': 'das Modell ähnelt dem Skelett kaum',
   'pieces follow one joint each, as hard parts': 'Teile folgen je einem Gelenk, wie feste Stücke',
   'pieces that float about the model are left out of account': 'Teile, die um das Modell schweben, zählen nicht mit',

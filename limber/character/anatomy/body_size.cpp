@@ -1,0 +1,91 @@
+#include "limber/character/anatomy/body_size.h"
+
+#include <algorithm>
+#include <limits>
+
+#include <fmt/format.h>
+
+namespace limber {
+
+namespace {
+
+// Metres. The shortest and the tallest adults on record measured 0.55 and 2.72 m; small dogs are 0.3 m long, elephants
+// 7.5 m. A person in another unit is far outside: 0.017 m and 170 m by centimetres, 0.043 m and 67 m by inches.
+constexpr double kSmallestBody = 0.3, kLargestBody = 10;
+
+// Is the joint of the body itself?
+bool isOfBody(const Anatomy& anatomy, Index joint) {
+  if (!anatomy.partOf[joint]) return false;
+  const PartKind kind = anatomy.parts[*anatomy.partOf[joint]].kind;
+  return kind != PartKind::kProp && kind != PartKind::kAttachment && kind != PartKind::kHair &&
+         kind != PartKind::kOther;
+}
+
+bool isSure(const Part* part) {
+  return part != nullptr && part->confidence >= kDoubtful;
+}
+
+// Insects and birds come smaller, fishes and snakes in any size.
+bool isPersonOrQuadruped(const Anatomy& anatomy) {
+  const Index legs = anatomy.pairsOf(PartKind::kLeg);
+  return (legs == 1 || legs == 2) && anatomy.pairsOf(PartKind::kWing) == 0 && isSure(anatomy.find(PartKind::kTrunk)) &&
+         isSure(anatomy.find(PartKind::kHead)) && isSure(anatomy.find(PartKind::kLeg, Side::kLeft)) &&
+         isSure(anatomy.find(PartKind::kLeg, Side::kRight));
+}
+
+}  // namespace
+
+BodySize bodySize(const Skeleton& skeleton, const Pose& pose, const Anatomy& anatomy) {
+  const std::vector<Vec3> positions = posePositions(skeleton, pose);
+  const auto countsBody = [&](Index joint) { return isOfBody(anatomy, joint); };
+  bool hasBody = false;
+  for (Index j = 0; j < skeleton.jointCount(); ++j) hasBody = hasBody || countsBody(j);
+  Box box;
+  double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
+  for (Index j = 0; j < skeleton.jointCount(); ++j) {
+    if (hasBody && !countsBody(j)) continue;
+    box.add(positions[j]);
+    const double height = anatomy.axes.up.dot(positions[j]);
+    lowest = std::min(lowest, height);
+    highest = std::max(highest, height);
+  }
+  BodySize size;
+  if (box.empty()) return size;
+  size.height = highest - lowest;
+  size.longestSide = box.longestSide();
+  const Part* trunk = anatomy.find(PartKind::kTrunk);
+  if (trunk && !trunk->joints.empty()) size.hips = anatomy.axes.up.dot(positions[trunk->joints.front()]) - lowest;
+  return size;
+}
+
+void warnUnlikelySize(const Motion& motion, Warnings& warnings) {
+  if (motion.skeleton.joints.empty()) return;
+  const Anatomy anatomy = readAnatomy(motion.skeleton);
+  if (!isPersonOrQuadruped(anatomy)) return;
+  // A rest pose with all joints in one point is met in motion files, whose frames then have the lengths.
+  Pose pose = restPose(motion.skeleton);
+  const double atRest = bodySize(motion.skeleton, pose, anatomy).longestSide;
+  double least = atRest, greatest = atRest;
+  const auto moved = std::find_if(motion.clips.begin(), motion.clips.end(), [](const Clip& clip) {
+    return !clip.translations.empty() || !clip.rotations.empty() || !clip.scales.empty();
+  });
+  if (moved != motion.clips.end()) {
+    sampleClip(*moved, 0, pose);
+    const double atStart = bodySize(motion.skeleton, pose, anatomy).longestSide;
+    least = std::min(least, atStart);
+    greatest = std::max(greatest, atStart);
+  }
+  if (greatest >= kSmallestBody && least <= kLargestBody) return;
+  warnings.add("unlikely-size",
+               fmt::format("the body measures {:.3g} m, as hardly any person or quadruped does: is its unit of length "
+                           "another?",
+                           greatest < kSmallestBody ? greatest : least));
+}
+
+void warnUnlikelySize(const Skeleton& skeleton, Warnings& warnings) {
+  Motion still;
+  still.skeleton = skeleton;
+  warnUnlikelySize(still, warnings);
+}
+
+}  // namespace limber
