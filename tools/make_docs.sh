@@ -160,10 +160,10 @@ if [ -d "$characters" ]; then
     -o $work/transfer.glb --quiet
   $limber pose $work/transfer.glb --turn UpperArm.L=z:40 --turn LowerArm.L=y:-50 --turn UpperLeg.R=x:-50 \
     --turn LowerLeg.R=x:70 --turn Head=y:25 -o $work/transfer_posed.glb --quiet
-  $limber preview "$characters"/quaternius_man_casual.glb --show bones --size 360x400 -o $images/transfer_source.png --quiet
-  $limber preview "$characters"/m2m_human_zombie.glb --size 360x400 -o $images/transfer_target.png --quiet
+  $limber preview "$characters"/quaternius_man_casual.glb --show bones --rest --size 360x400 -o $images/transfer_source.png --quiet
+  $limber preview "$characters"/m2m_human_zombie.glb --rest --size 360x400 -o $images/transfer_target.png --quiet
   $limber preview $work/transfer_posed.glb --size 360x400 -o $images/transfer_posed.png --quiet
-  parts() { $limber preview "$(dirname "$characters")/$2" --show parts --size 300x250 -o $images/parts_$1.png --quiet "${@:3}"; }
+  parts() { $limber preview "$(dirname "$characters")/$2" --show parts --rest --size 300x250 -o $images/parts_$1.png --quiet "${@:3}"; }
   parts man rigged/cesium_man.glb
   parts horse rigged/quaternius_horse.glb
   parts spider rigged/quaternius_spider.glb

@@ -29,7 +29,7 @@ struct PreviewArguments {
   std::optional<double> time;  // seconds
   int frames = 0;              // of a contact sheet; 0: one picture
   int worst = 0;               // poses of a range of motion; 0: all
-  bool animate = false, turntable = false;
+  bool animate = false, turntable = false, rest = false;
   std::optional<double> fps;  // of an animation or a turntable
   std::string background = "studio";
   PartArguments parts;
@@ -49,6 +49,12 @@ constexpr double kUsualFps = 20;
 
 bool showsClip(const PreviewArguments& options) {
   return options.animate || options.frames > 0 || options.time || !options.clip.empty();
+}
+
+// A rigged file with clips, such as limber animate writes, begins with the first of them: the rest pose would show
+// nothing of what was done. One in which limber pose has saved another pose shows that.
+bool beginsWithClip(const Asset& asset, const SceneMaker& scenes) {
+  return !asset.document.skins.empty() && !asset.document.animations.empty() && scenes.isAtRest();
 }
 
 std::vector<double> momentsOf(const PreviewArguments& options, double duration) {
@@ -186,6 +192,8 @@ void run(PreviewArguments options) {
   Warnings warnings;
   const auto draw = [&] {
     const SceneMaker scenes(asset, deformer);
+    const bool isAsked = options.rest || isRange || showsClip(options);
+    if (!isAsked && beginsWithClip(asset, scenes)) options.time = 0;
     if (options.turntable) return turntable(asset, scenes, options, preview, *progress, warnings);
     if (showsClip(options)) return clipPicture(asset, scenes, options, preview, *progress, warnings);
     if (isRange) return rangePicture(asset, scenes, options.worst, preview, warnings);
@@ -221,11 +229,12 @@ void addPreviewCommand(CLI::App& program) {
       ->add_option("--size", options->size,
                    "width and height in pixels (default 1024x768; of each picture of several 320x320)")
       ->type_name("WxH");
-  command
-      ->add_option(
-          "--clip", options->clip,
-          "the clip of --time, --frames or --animate, without which the rest pose is drawn (default: the first)")
-      ->type_name("NAME");
+  CLI::Option* clip =
+      command
+          ->add_option(
+              "--clip", options->clip,
+              "the clip to show (default: the first), at its beginning unless --time, --frames or --animate says more")
+          ->type_name("NAME");
   CLI::Option* time = command->add_option("--time", options->time, "a moment of the clip, in seconds")
                           ->check(momentOfClip())
                           ->type_name("S");
@@ -235,6 +244,10 @@ void addPreviewCommand(CLI::App& program) {
                             ->excludes(time);
   CLI::Option* animate =
       command->add_flag("--animate", options->animate, "an animated PNG of the clip")->excludes(time)->excludes(frames);
+  CLI::Option* rest =
+      command->add_flag("--rest", options->rest,
+                        "draw no clip, but the pose of the file's joints: the rest pose, or what limber pose left");
+  for (CLI::Option* ofClip : {clip, time, frames, animate}) rest->excludes(ofClip);
   command->add_flag("--turntable", options->turntable, "an animated PNG of the model from all around, in 4 seconds")
       ->excludes(animate)
       ->excludes(frames);
@@ -255,7 +268,9 @@ void addPreviewCommand(CLI::App& program) {
   options->parts.addTo(*command);
   options->common.addTo(*command);
   command->footer(
-      "A file with a skeleton and no mesh, such as a BVH, is shown as its bones.\n"
+      "A file with a skeleton and no mesh, such as a BVH, is shown as its bones. A rigged file with clips is shown at "
+      "the\n"
+      "beginning of its first clip, but where limber pose has saved a pose in it, and with --rest.\n"
       "Stretch is blue where the surface keeps its size at rest, and red where it is twice or half of it: at a\n"
       "moment of a clip, or without one as a sheet of a range of motion test (limber evaluate model --help), of which\n"
       "--worst takes the poses that stretch the most by linear blending, whatever the deformer.\n" +

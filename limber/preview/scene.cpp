@@ -129,6 +129,22 @@ Scene SceneMaker::still() const {
   return unrigged(readShapeWeights(asset_));
 }
 
+bool SceneMaker::isAtRest() const {
+  // Of single precision and inverse binds, seen in files; a pose that is meant moves joints by more.
+  constexpr double kRounding = 1e-3;  // of the skeleton's diagonal, and of a unit vector
+  if (skeleton_.jointNode.empty()) return true;
+  const std::vector<Affine> rest = restGlobals(skeleton_.skeleton);
+  const std::vector<Affine> now = poseGlobals(skeleton_.skeleton, readNodePose(asset_, skeleton_));
+  Box box;
+  for (const Affine& joint : rest) box.add(joint.translation());
+  for (std::size_t j = 0; j < rest.size(); ++j) {
+    const double moved = (now[j].translation() - rest[j].translation()).norm();
+    const double turned = (now[j].linear() - rest[j].linear()).norm();
+    if (moved > kRounding * box.diagonal() || turned > kRounding * rest[j].linear().norm()) return false;
+  }
+  return true;
+}
+
 Scene SceneMaker::unrigged(const ShapeWeights& shapes) const {
   Scene scene;
   Geometry geometry = collectGeometry(asset_);

@@ -64,6 +64,8 @@ class SceneMaker {
   explicit SceneMaker(const Asset& asset, const Deformer& deformer = kLinearBlendDeformer);
 
   Scene still() const;
+  // Do the joints' nodes have the rest pose? True without a rig. False where a pose was saved, which still() shows.
+  bool isAtRest() const;
   Scene at(const Clip& clip, double seconds) const;
   double duration(const Clip& clip) const;  // seconds, with the blend shapes of its name
   // In a pose of animatedSkeleton(asset), which must be rigged.

@@ -31,6 +31,23 @@ TEST(Scene, ShowsARiggedModelAsItsJointsStand) {
   EXPECT_EQ(after.weights.weights, before.weights.weights);
 }
 
+TEST(Scene, KnowsWhetherAPoseWasSaved) {
+  Asset asset = testing::riggedStool();
+  EXPECT_TRUE(SceneMaker(asset).isAtRest());
+  const AssetSkeleton rig = readSkeleton(asset);
+  const auto isAtRestWith = [&](const auto& change) {
+    Asset posed = asset.clone();
+    Pose pose = readNodePose(posed, rig);
+    change(pose.locals.back());
+    writeNodePose(posed, rig, pose);
+    return SceneMaker(posed).isAtRest();
+  };
+  // A turn of the last joint moves no other one.
+  EXPECT_FALSE(isAtRestWith([](Transform& local) { local.rotation = Quat(0, 0, 1, 0) * local.rotation; }));
+  EXPECT_FALSE(isAtRestWith([](Transform& local) { local.translation.x() += 0.1; }));
+  EXPECT_TRUE(isAtRestWith([](Transform& local) { local.translation.x() += 1e-6; }));
+}
+
 TEST(Scene, ReportsJointsBeyondEightOfAVertex) {
   Asset asset = testing::riggedStool();
   EXPECT_EQ(testing::countOf(makeScene(asset).warnings, "many-influences"), 0u);

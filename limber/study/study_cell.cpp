@@ -27,8 +27,8 @@ void addStretchPicture(StudyCell& cell) {
 void addPictures(StudyCell& cell) {
   for (const std::string_view what : {"bones", "weights"}) {
     cell.steps.push_back({fmt::format("preview {}", what),
-                          {"preview", "rigged.glb", "--show", std::string(what), "--size", std::string(kPictureSize),
-                           "--quiet", "-o", fmt::format("{}.png", what)},
+                          {"preview", "rigged.glb", "--show", std::string(what), "--rest", "--size",
+                           std::string(kPictureSize), "--quiet", "-o", fmt::format("{}.png", what)},
                           MeasureSource::kNone,
                           {},
                           std::string(what)});
