@@ -47,13 +47,6 @@ struct BatchStatusArguments {
   bool json = false, quiet = false;
 };
 
-std::string timeText(double seconds) {
-  constexpr double kMinute = 60, kHour = 3600;
-  if (seconds < 2 * kMinute) return fmt::format("{:.0f} s", seconds);
-  if (seconds < 2 * kHour) return fmt::format("{:.0f} min", seconds / kMinute);
-  return fmt::format("{:.1f} h", seconds / kHour);
-}
-
 // One line on a terminal; elsewhere a line now and then, for logs.
 class BatchLine {
  public:

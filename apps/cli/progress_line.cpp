@@ -3,6 +3,7 @@
 #include <csignal>
 #include <cstdio>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -53,13 +54,18 @@ void TerminalProgress::finish() {
   clear();
 }
 
+void TerminalProgress::describe(std::string text) {
+  description_ = std::move(text);
+}
+
 void TerminalProgress::draw(std::string_view stage, double fraction) {
   if (!enabled_) return;
   const double now = secondsNow();
   if (now - startedAt_ < kQuietSeconds || now - drawnAt_ < kRedrawSeconds) return;
   drawnAt_ = now;
   drawn_ = true;
-  fmt::print(stderr, "\r{} {:.0f} %\x1b[K", printable(stage), 100 * fraction);
+  const std::string text = description_.empty() ? fmt::format("{} {:.0f} %", stage, 100 * fraction) : description_;
+  fmt::print(stderr, "\r{}\x1b[K", printable(text));
   std::fflush(stderr);
 }
 
@@ -68,6 +74,13 @@ void TerminalProgress::clear() {
   fmt::print(stderr, "\r\x1b[K");
   std::fflush(stderr);
   drawn_ = false;
+}
+
+std::string timeText(double seconds) {
+  constexpr double kMinute = 60, kHour = 3600;
+  if (seconds < 2 * kMinute) return fmt::format("{:.0f} s", seconds);
+  if (seconds < 2 * kHour) return fmt::format("{:.0f} min", seconds / kMinute);
+  return fmt::format("{:.1f} h", seconds / kHour);
 }
 
 bool interrupted() {

@@ -1,6 +1,8 @@
 // Progress on a terminal, and Ctrl-C.
 #pragma once
 
+#include <string>
+
 #include "limber/core/progress.h"
 
 namespace limber::cli {
@@ -18,6 +20,8 @@ class TerminalProgress {
   Progress* operator->() { return &progress_; }
   // Closes the last stage and takes the line away, so that other text can follow.
   void finish();
+  // Draws `text` in place of the name and the percentage of the stage, until the next call; empty: these again.
+  void describe(std::string text);
 
  private:
   void draw(std::string_view stage, double fraction);
@@ -26,8 +30,12 @@ class TerminalProgress {
   bool enabled_;
   double startedAt_, drawnAt_ = 0;
   bool drawn_ = false;
+  std::string description_;
   Progress progress_;
 };
+
+// A span of time as people say it: "40 s", "12 min", "3.5 h".
+std::string timeText(double seconds);
 
 // Has SIGINT or SIGTERM come?
 bool interrupted();

@@ -1,10 +1,12 @@
 // limber study: methods side by side over many models, as tables and as a page.
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <span>
 #include <vector>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "adapter_arguments.h"
 #include "command.h"
@@ -52,6 +54,33 @@ void writeReport(const StudyResult& study, std::span<const Vote> votes, const st
   writeFiles(files);
 }
 
+// How far it is: on a terminal in the line of the progress, elsewhere a line for each tenth of the cells, for logs.
+class StudyLine {
+ public:
+  StudyLine(bool quiet, TerminalProgress& progress)
+      : isLog_(!quiet && isatty(STDERR_FILENO) == 0), progress_(progress) {}
+
+  void show(const StudyProgress& at) {
+    std::string text = fmt::format("cell {} of {}", at.done, at.cells);
+    if (at.secondsLeft > 0) text += fmt::format(", about {} left", timeText(at.secondsLeft));
+    progress_.describe(text);
+    if (!isBegun_) {
+      isBegun_ = true;
+      shown_ = at.done;
+    }
+    const std::size_t step = std::max<std::size_t>(1, at.cells / 10);
+    if (!isLog_ || at.done == at.cells || at.done < shown_ + step) return;
+    shown_ = at.done;
+    fmt::print(stderr, "{}\n", text);
+    std::fflush(stderr);
+  }
+
+ private:
+  bool isLog_, isBegun_ = false;
+  TerminalProgress& progress_;
+  std::size_t shown_ = 0;  // cells done at the last line
+};
+
 void run(const StudyArguments& arguments) {
   if (arguments.prints) {
     fmt::print("{}", exampleStudyPlan());
@@ -70,7 +99,10 @@ void run(const StudyArguments& arguments) {
   options.outOfMemoryCode = kOutOfMemoryCode;
   options.retries = arguments.retries;
   TerminalProgress progress(arguments.quiet);
+  StudyLine line(arguments.quiet, progress);
+  options.tell = [&](const StudyProgress& at) { line.show(at); };
   const StudyResult study = runStudy(plan, options, *progress);
+  progress.describe({});
   progress->stage("write");
   const std::vector<Vote> votes = votesOn(study.cells, allVotes);
   writeReport(study, votes, options.output, {!arguments.noTimes});

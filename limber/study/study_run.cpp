@@ -260,6 +260,10 @@ class StudyRun {
         chains.back().push_back(jobOf(step.arguments, output_ / kWork / key));
       }
     }
+    std::size_t left = 0;
+    for (const std::string& key : open) left += cellsOf[key].size();
+    const double begun = secondsNow();
+    tell(study, left, begun);
     runJobs(chains, options_.jobs, progress_, [&](std::size_t i, const std::vector<JobResult>& results) {
       const std::vector<std::size_t>& cells = cellsOf[open[i]];
       const CellResult result = takeCell(study.cells[cells.front()], open[i], chains[i], results);
@@ -267,7 +271,17 @@ class StudyRun {
       for (const std::size_t cell : cells) study.results[cell] = result;
       study.ran += cells.size();
       removeFolder(output_ / kWork / open[i]);
+      left -= cells.size();
+      tell(study, left, begun);
     });
+  }
+
+  void tell(const StudyResult& study, std::size_t left, double begun) const {
+    if (!options_.tell) return;
+    StudyProgress at{study.cells.size(), study.cells.size() - left, 0};
+    const auto ran = static_cast<double>(study.ran);
+    if (study.ran > 0) at.secondsLeft = (secondsNow() - begun) / ran * static_cast<double>(left);
+    options_.tell(at);
   }
 
   // Whether the model has a part that bends.

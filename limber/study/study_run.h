@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <vector>
 
 #include "limber/core/progress.h"
@@ -11,13 +12,20 @@
 
 namespace limber {
 
+// How far the cells of a study are.
+struct StudyProgress {
+  std::size_t cells = 0, done = 0;  // done: also those kept from before
+  double secondsLeft = 0;           // at the mean pace of the cells that ran; 0 while none did
+};
+
 struct StudyOptions {
-  std::filesystem::path program;     // limber's own (ownProgram)
-  std::filesystem::path planFolder;  // that the plan's paths are seen from
-  std::filesystem::path output;      // made where it is missing
-  int jobs = 1;                      // at once
-  int outOfMemoryCode = 0;           // by which the program says that memory did not suffice
-  bool retries = false;              // what did not end well is run again
+  std::filesystem::path program;                        // limber's own (ownProgram)
+  std::filesystem::path planFolder;                     // that the plan's paths are seen from
+  std::filesystem::path output;                         // made where it is missing
+  int jobs = 1;                                         // at once
+  int outOfMemoryCode = 0;                              // by which the program says that memory did not suffice
+  bool retries = false;                                 // what did not end well is run again
+  std::function<void(const StudyProgress&)> tell = {};  // before the first cell runs, and after each
 };
 
 struct StudyResult {

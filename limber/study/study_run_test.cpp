@@ -116,6 +116,24 @@ TEST_F(StudyRuns, MeasuresEachCell) {
   EXPECT_TRUE(fs::is_empty(options_.output / ".limber-study"));
 }
 
+TEST_F(StudyRuns, ReportsHowManyCellsAreDone) {
+  addModels({"bare.obj", "fox.glb"});  // three cells
+  std::vector<StudyProgress> reports;
+  options_.jobs = 1;
+  options_.tell = [&](const StudyProgress& at) { reports.push_back(at); };
+  run();
+  ASSERT_EQ(reports.size(), 4u);
+  for (std::size_t i = 0; i < reports.size(); ++i) {
+    EXPECT_EQ(reports[i].cells, 3u);
+    EXPECT_EQ(reports[i].done, i);
+    EXPECT_EQ(reports[i].secondsLeft > 0, i == 1 || i == 2) << i;
+  }
+  reports.clear();
+  run();
+  ASSERT_EQ(reports.size(), 1u);
+  EXPECT_EQ(reports[0].done, 3u);
+}
+
 TEST_F(StudyRuns, ACellThatEndsBadlySaysSo) {
   plan_.rig.combinations = {{"template", "bone-heat", {}}};
   addModels({"crash.glb", "hungry.glb", "refused.glb", "garbage.glb", "unreadable.glb", "fine.glb"});
