@@ -1,4 +1,5 @@
 // Poses, sessions and motions, through the program itself.
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
@@ -10,6 +11,7 @@ namespace limber {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
@@ -155,6 +157,10 @@ TEST_F(Cli, SessionReplayTakesALimberFile) {
                  {"../out", "x"}}));
   EXPECT_EQ(run({"session", "replay", "more.limber", "-o", "posed.glb"}).code, 0);
   EXPECT_FALSE(fs::exists(folder_.parent_path() / "out"));
+}
+
+nlohmann::json infoOf(const Result& result) {
+  return nlohmann::json::parse(result.out);
 }
 
 const std::string kWalk =
@@ -325,6 +331,77 @@ TEST_F(Cli, ConvertWritesUsd) {
   EXPECT_EQ(files(), before);
 }
 
+TEST_F(Cli, ConvertWritesMeshesAlone) {
+  makeRobot();
+  for (const char* file : {"robot.obj", "robot.stl", "robot.ply"}) {
+    const Result whole = run({"convert", "robot.glb", file});
+    EXPECT_EQ(whole.code, 0) << whole.error;
+    EXPECT_EQ(whole.error, "");
+    EXPECT_THAT(whole.out, AllOf(StartsWith(std::string("written: ") + file), HasSubstr("triangles")));
+    EXPECT_EQ(infoOf(run({"info", file, "--json"})).at("triangles"),
+              infoOf(run({"info", "robot.glb", "--json"})).at("triangles"))
+        << file;
+    EXPECT_EQ(infoOf(run({"info", file, "--json"})).at("bounds"),
+              infoOf(run({"info", "robot.glb", "--json"})).at("bounds"))
+        << file;
+  }
+  // Of a rigged model the rest pose, which is the mesh that got the rig.
+  ASSERT_EQ(run({"sample", "biped", "-o", "person.glb", "-q"}).code, 0);
+  ASSERT_EQ(run({"sample", "walk", "-o", "walk.bvh", "-q"}).code, 0);
+  ASSERT_EQ(run({"animate", "person.glb", "walk.bvh", "-o", "walking.glb", "-q"}).code, 0);
+  const Result rest = run({"convert", "walking.glb", "rest.ply"});
+  EXPECT_EQ(rest.code, 0) << rest.error;
+  EXPECT_THAT(rest.error, AllOf(HasSubstr("[lost-rig]"), HasSubstr("[lost-clips], at walk\n")));
+  ASSERT_EQ(run({"convert", "person.glb", "person.ply", "-q"}).code, 0);
+  EXPECT_EQ(infoOf(run({"info", "rest.ply", "--json"})).at("bounds"),
+            infoOf(run({"info", "person.ply", "--json"})).at("bounds"));
+  const std::vector<std::string> before = files();
+  for (const std::vector<std::string>& call : {std::vector<std::string>{"walking.glb", "none.obj", "--mirror"},
+                                               {"walking.glb", "none.obj", "--clip", "walk"},
+                                               {"walking.glb", "none.stl", "--target", "unreal"},
+                                               {"walking.glb", "person.glb", "-o", "none.ply"},
+                                               {"walk.bvh", "none.ply"}}) {
+    std::vector<std::string> words = {"convert"};
+    words.insert(words.end(), call.begin(), call.end());
+    expectOneLine(run(words), 1);
+  }
+  EXPECT_EQ(files(), before);
+}
+
+TEST_F(Cli, ConvertWarnsOfABodyInAnotherUnit) {
+  ASSERT_EQ(run({"sample", "walk", "-o", "walk.bvh", "-q"}).code, 0);  // in metres
+  const Result tiny = run({"convert", "walk.bvh", "tiny.glb", "--unit", "cm"});
+  EXPECT_EQ(tiny.code, 0);
+  EXPECT_THAT(tiny.error, AllOf(StartsWith("warning: the body measures 0.01"), HasSubstr("[unlikely-size]\n")));
+  EXPECT_EQ(run({"convert", "walk.bvh", "walk.glb"}).error, "");
+  ASSERT_EQ(run({"convert", "walk.bvh", "walk_cm.bvh", "--output-unit", "cm"}).error, "");
+  EXPECT_THAT(run({"convert", "walk_cm.bvh", "huge.glb"}).error, HasSubstr("[unlikely-size]"));
+  EXPECT_EQ(run({"convert", "walk_cm.bvh", "again.glb", "--unit", "cm"}).error, "");
+}
+
+TEST_F(Cli, InfoMeasuresSkeletons) {
+  ASSERT_EQ(run({"sample", "walk", "-o", "walk.bvh", "-q"}).code, 0);
+  const nlohmann::json walk = infoOf(run({"info", "walk.bvh", "--json"}));
+  const double height = walk.at("skeleton_size").at("height"), hips = walk.at("skeleton_size").at("hips");
+  EXPECT_GT(height, 1.4);
+  EXPECT_LT(height, 1.9);
+  EXPECT_NEAR(hips / height, 0.56, 0.1);
+  ASSERT_EQ(walk.at("joint_positions").size(), walk.at("joint_names").size());
+  const Result text = run({"info", "walk.bvh"});
+  EXPECT_THAT(text.out, ContainsRegex("\nskeleton  *1\\.[0-9]* m high from the lowest joint to the highest, hips at "));
+  EXPECT_THAT(text.out, Not(HasSubstr("positions in rest pose")));
+  EXPECT_EQ(text.error, "");
+  const Result listed = run({"info", "walk.bvh", "--joints"});
+  EXPECT_THAT(listed.out, HasSubstr("positions in rest pose, in metres: x, y, z\n"));
+  const std::string first = walk.at("joint_names")[0];
+  EXPECT_THAT(listed.out,
+              HasSubstr(fmt::format(
+                  "{:16}{:<24} {:10.5f} {:10.5f} {:10.5f}\n", "", first, walk.at("joint_positions")[0][0].get<double>(),
+                  walk.at("joint_positions")[0][1].get<double>(), walk.at("joint_positions")[0][2].get<double>())));
+  ASSERT_EQ(run({"convert", "walk.bvh", "tiny.glb", "--unit", "cm", "-q"}).code, 0);
+  EXPECT_THAT(run({"info", "tiny.glb"}).error, HasSubstr("[unlikely-size]"));
+}
+
 TEST_F(Cli, ConvertWritesMotionsForAvatars) {
   ASSERT_EQ(run({"sample", "walk", "-o", "walk.bvh", "-q"}).code, 0);
   const Result whole = run({"convert", "walk.bvh", "walk.vrma"});
@@ -363,6 +440,30 @@ TEST_F(Cli, PreviewShowsClips) {
   expectOneLine(run({"preview", "walk.bvh", "--turntable", "--animate", "-o", "none.png"}), 2);
   expectOneLine(run({"preview", "walk.bvh", "--fps", "10", "-o", "none.png"}), 1);
   expectOneLine(run({"preview", "walk.bvh", "--background", "pink", "-o", "none.png"}), 1);
+}
+
+TEST_F(Cli, PreviewBeginsWithTheFirstClip) {
+  put("walk.bvh", kWalk);
+  ASSERT_EQ(run({"sample", "flying", "-o", "flying.glb", "-q"}).code, 0);
+  const auto picture = [&](const std::string& file, const std::vector<std::string>& options) {
+    std::vector<std::string> words = {"preview", file, "--size", "160x120", "-o", "picture.png"};
+    words.insert(words.end(), options.begin(), options.end());
+    const Result drawn = run(words);
+    EXPECT_EQ(drawn.code, 0) << drawn.error;
+    return content("picture.png");
+  };
+  for (const char* file : {"walk.bvh", "flying.glb"}) {
+    EXPECT_EQ(picture(file, {}), picture(file, {"--time", "0"})) << file;
+    EXPECT_NE(picture(file, {}), picture(file, {"--rest"})) << file;
+    EXPECT_EQ(picture(file, {"--show", "bones"}), picture(file, {"--show", "bones", "--time", "0"})) << file;
+    expectOneLine(run({"preview", file, "--rest", "--time", "0", "-o", "none.png"}), 2);
+  }
+  // A pose that was saved is shown, whatever clips there are.
+  const auto joints = nlohmann::json::parse(run({"info", "flying.glb", "--json"}).out).at("joint_names");
+  ASSERT_EQ(run({"pose", "flying.glb", "--turn", joints[1].get<std::string>() + "=y:40", "-o", "posed.glb", "-q"}).code,
+            0);
+  EXPECT_EQ(picture("posed.glb", {}), picture("posed.glb", {"--rest"}));
+  EXPECT_NE(picture("posed.glb", {}), picture("posed.glb", {"--time", "0"}));
 }
 
 TEST_F(Cli, PreviewSaysWhatReadingLost) {

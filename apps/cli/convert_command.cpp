@@ -19,6 +19,7 @@
 #include "limber/document/clip/replace_clips.h"
 #include "limber/document/gltf/accessor_sweep.h"
 #include "limber/document/gltf/compact_buffers.h"
+#include "limber/document/mesh/rest_mesh.h"
 #include "limber/document/unique_names.h"
 #include "limber/skeleton/clip/clip_edit.h"
 #include "limber/skeleton/clip/moving_scales.h"
@@ -290,6 +291,33 @@ bool needsJoints(const ConvertArguments& options) {
   return options.files.size() > 1 || isMotionFormat(options.output) || options.mirror || options.clipEdits.edits.any();
 }
 
+// A mesh format holds neither joints nor clips, so that nothing which changes these can be asked for.
+void checkMeshArguments(const ConvertArguments& options) {
+  if (options.files.size() > 1) {
+    throw Error(ErrorCode::kBadArgument, fmt::format("holds one mesh, not {} files", options.files.size()),
+                options.output, "convert one at a time");
+  }
+  const bool changesClips = options.editsClips() || !options.clips.empty();
+  if (changesClips || !findTarget(options.target.target).isPlain()) {
+    throw Error(ErrorCode::kBadArgument,
+                fmt::format("holds no {}, which {} would change", changesClips ? "clips" : "skeleton",
+                            changesClips ? "the other options" : "--target"),
+                options.output, "leave these options out, or write a .glb");
+  }
+}
+
+// The model in its rest pose, as a mesh alone.
+void writeMeshFile(const ConvertArguments& options, TerminalProgress& progress, const Account& account) {
+  const Asset asset = readAsset(options.files.front());
+  progress->stage("write");
+  Warnings warnings = asset.warnings;
+  const ExportMesh mesh = exportRestMesh(asset, warnings);
+  writeMesh(mesh, options.output);
+  progress.finish();
+  account.line(fmt::format("written: {}, {}", options.output, counted(mesh.triangles.size(), "triangle")));
+  printWarnings(warnings, options.common.quiet);
+}
+
 void run(ConvertArguments options) {
   options.common.apply();
   if (options.output.empty()) {
@@ -300,10 +328,11 @@ void run(ConvertArguments options) {
     options.files.pop_back();
   }
   std::vector<std::string_view> formats = modelExtensions();
-  formats.insert(formats.end(), {".vrma", ".bvh"});
+  formats.insert(formats.end(), {".vrma", ".bvh", ".obj", ".stl", ".ply"});
   checkOutput(options.output, formats);
   options.target.check();
   options.clipEdits.check();
+  if (isMeshFormat(options.output)) checkMeshArguments(options);
   if (options.clipEdits.edits.tolerance && isBvh(options.output)) {
     throw Error(ErrorCode::kBadArgument, "a BVH has all frames: --tolerance has nothing to leave out", options.output,
                 "write a .glb, or fewer frames by --fps");
@@ -320,6 +349,7 @@ void run(ConvertArguments options) {
 
   TerminalProgress progress(options.common.quiet);
   progress->stage("read");
+  if (isMeshFormat(options.output)) return writeMeshFile(options, progress, account);
   std::optional<Motion> motion;
   std::optional<Asset> model;  // the first file, where it is one
   for (const std::string& file : options.files) {
@@ -340,6 +370,7 @@ void run(ConvertArguments options) {
   motion->clips = chosenClips(std::move(motion->clips), options.clips);
   progress->stage("edit");
   trimAndMirror(*motion, options);
+  warnUnlikelySize(*motion, motion->warnings);
   std::vector<ClipEditReport> reports;
   if (isMotionFormat(options.output)) {
     reports = editClips(*motion, options.clipEdits.edits);
@@ -370,10 +401,12 @@ void addConvertCommand(CLI::App& program) {
   command
       ->add_option("FILES", options->files,
                    "motions over one skeleton (BVH, SMPL's .npz, GLB, glTF, VRM, VRMA, FBX, DAE); the last is the "
-  warnUnlikelySize(*motion, motion->warnings);
                    "output unless -o names it")
       ->required();
-  command->add_option("-o,--output", options->output, "a .bvh or .vrma, or " + modelOutputHelp())->type_name("FILE");
+  command
+      ->add_option("-o,--output", options->output,
+                   "a .bvh or .vrma, a mesh alone as .obj, .stl or .ply, or " + modelOutputHelp())
+      ->type_name("FILE");
   command->add_option("--clip", options->clips, "only the clip of this name; may be given several times")
       ->type_name("NAME")
       ->allow_extra_args(false);
@@ -402,6 +435,9 @@ void addConvertCommand(CLI::App& program) {
       "BVH comes a skeleton with one clip, named after the file. A model keeps all that it has; its clips are the "
       "ones\n"
       "that are written. A BVH, a USD and a VRMA hold one clip: of several each gets a file, OUT_CLIP.bvh.\n"
+      "An OBJ, STL and PLY hold a mesh alone: of a rigged model it is the rest pose, without rig and clips, as a "
+      "warning\n"
+      "tells (limber pose --bake writes another pose).\n"
       "Edits come in the order trim, mirror, loop, root motion, fps, tolerance.\n"
       "\nExamples:\n"
       "  limber convert walk.bvh walk.glb\n"
@@ -412,6 +448,7 @@ void addConvertCommand(CLI::App& program) {
       "  limber convert walk.glb game.glb --loop --root-joint --tolerance 1\n"
       "  limber convert hero.glb hero.fbx --target unreal\n"
       "  limber convert walking.glb walking.usdz --clip walk\n"
+      "  limber convert person.glb scan.obj\n"
       "  limber convert hero.glb hero.vrm --vrm-author Ada --vrm-allow everyone\n"
       "  limber convert walking.glb walk.vrma --clip walk\n"
       "  limber convert walking.glb mirrored.bvh --clip walk --trim 0.5:2 --mirror");
