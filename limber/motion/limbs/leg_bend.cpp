@@ -9,11 +9,11 @@ namespace limber {
 
 namespace {
 
-// Radians.
-constexpr double kStraight = 0.5;       // added to bends, squared: the knee of a leg that is nearly straight turns much
-constexpr double kSoftStraight = 0.04;  // likewise squared
-constexpr double kSoftFold = 0.1;       // before the most that a leg bends
-constexpr double kMostWithHock = 2.8;   // of knee and hock together: a right angle and a bit each
+// Set by hand, for a fox's clips on a cow and a wolf.
+constexpr double kStraight = 0.5;       // radians; 0.3 to 0.8; added to bends, squared: else nearly straight knees snap
+constexpr double kSoftStraight = 0.04;  // radians squared; 0.01 to 0.1; over which that ends without a kink
+constexpr double kSoftFold = 0.1;       // radians; 0.05 to 0.3; over which the bend comes to its most
+constexpr double kMostWithHock = 2.8;   // radians; 2.4 to pi; of knee and hock together, a right angle and a bit each
 
 struct Bones {
   double all = 0, longest = 0;

@@ -9,7 +9,7 @@
 
 namespace limber {
 
-// Radians of a knee: it folds further only where a body lies on its legs.
+// Radians; pi / 2 to 2.6; the bend of a knee: it folds further only where a body lies on its legs; set by hand.
 inline constexpr double kMostBend = 2 * kPi / 3;
 
 class LegBend {
@@ -32,8 +32,8 @@ class LegBend {
 
     Index upper, end;
     double first, second;
-    double most = 2.3;
-    double atRest;  // its bend in the neutral pose
+    double most = 2.3;  // by bendAt(), radians; 2.1 to 2.8; of a leg without a hock; set by hand
+    double atRest;      // its bend in the neutral pose
   };
 
   Chain source_, target_;

@@ -42,8 +42,12 @@ struct Leg : Limb {
   double upright = 1;  // footDriven: of the source's body, 0 where it lies on its side
 };
 
-// Leg::lift from which on a foot-driven leg may leave its goal for the source's bend alone: the body no longer
-// follows it.
+// Limb lengths; 0.99 to 0.9995; to which a limb stretches: fully stretched knees and elbows pop; by jerk on the shared
+// people (0.9995 before).
+inline constexpr double kMaxStretch = 0.998;
+
+// Leg::lift, hip heights; 0.3 to 1; from which on a foot-driven leg may leave its goal for the source's bend alone: the
+// body no longer follows it; set by hand with farm animals' clips on each other.
 inline constexpr double kLifted = 0.6;
 
 bool anyFootDriven(std::span<const Leg> legs);

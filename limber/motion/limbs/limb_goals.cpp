@@ -14,28 +14,47 @@ namespace limber {
 
 namespace {
 
-// In hip heights of the target.
-constexpr double kFootSlack = 0.9;      // how far a planted foot may be from where the joint angles have it
-constexpr double kStretch = 0.998;      // of a leg's length: fully stretched knees pop
-constexpr double kChangeRate = 25;      // 1/seconds, of Leg::changed
-constexpr double kRiseRate = 40;        // likewise, of an animal's pelvis
-constexpr double kSoftGround = 0.006;   // over the ground, where a point begins to slow down
-constexpr double kSoftLowered = 0.003;  // of the source: where its foot goes below where it stands
-constexpr double kMostSoft = 0.04;      // more of it, the faster a point comes down
-constexpr double kFallSeconds = 0.03;   // of its way: so much the earlier a point slows down
-constexpr double kFallRate = 40;        // 1/seconds, of the speed that is taken for its own
-// Shares of that softness that a planted foot loses: the point that holds it, and the other.
+// Hip heights; 0.5 to 1.5; how far a planted foot may be from its joint angles; by jerk on the shared motions (0.25 and
+// 0.5 before).
+constexpr double kFootSlack = 0.9;
+// 1/seconds; 10 to 60; of Leg::changed; by jerk on all 528 shared pairs of a motion and a person.
+constexpr double kChangeRate = 25;
+constexpr double kRiseRate = 40;  // 1/seconds; 20 to 80; of an animal's pelvis, as feet let go; set by hand
+
+// Hip heights, where nothing else is said. A point that comes down slows within kSoftGround of the ground, and the
+// faster it falls within up to kMostSoft more: what it falls in kFallSeconds. By jerk on the shared pairs of a motion
+// and a person (at most 1.1 times the source's on 526 of 528).
+constexpr double kSoftGround = 0.006;  // 0.002 to 0.01
+constexpr double kMostSoft = 0.04;     // 0.02 to 0.08
+constexpr double kFallSeconds = 0.03;  // seconds; 0.01 to 0.06
+constexpr double kFallRate = 40;       // 1/seconds; 20 to 80; by which that speed is smoothed
+// Fractions of that softness that a planted foot loses; 0 to 1; the point that is pinned, and the other; by jerk on the
+// shared people.
 constexpr double kFirmHeld = 0.9, kFirmBeside = 0.2;
-constexpr double kTipLies = 0.05;   // over the ground: from there on toes that the target alone has lie down
-constexpr double kCarriedUp = 0.5;  // share of its hip's way up that a person's free foot takes part in
-// Of foot-driven legs.
-constexpr double kSoftLeg = 0.03, kSoftStanding = 0.003;  // of the most that a leg reaches, leg lengths
-constexpr double kFaces = 0.5;  // squared cosine of half the angle by which a body leans that still faces a way
-// Hip heights a second at which planted feet slip by half.
+// Hip heights of the source; 0.001 to 0.01; where its foot sinks below where it stands; set on a wolf's idle as a
+// horse, which trembled before.
+constexpr double kSoftLowered = 0.003;
+constexpr double kTipLies = 0.05;  // hip heights; 0.02 to 0.1; below it toes of the target alone lie down; set by hand
+// Fraction; 0 to 1; of its hip's rise that a person's free foot takes part in; by jerk on all 528 shared pairs (0.7
+// before).
+constexpr double kCarriedUp = 0.5;
+
+// Of foot-driven legs; set by hand on farm animals' clips on each other, where nothing else is said.
+// Leg lengths; 0.01 to 0.06 lifted, 0.001 to 0.01 planted; before a leg is stretched.
+constexpr double kSoftLeg = 0.03, kSoftStanding = 0.003;
+// Squared cosine of half an angle; 0.25 to 0.75; a body that leans by more faces nowhere (0.5: 90 degrees); set by
+// hand.
+constexpr double kFaces = 0.5;
+// Hip heights a second; 0.3 to 1, 0.2 to 0.8 of people (set on a dinosaur's clips on them); at which planted feet slip
+// by half, with an exponent of 2 to 4.
 constexpr double kSlipSpeed = 0.65, kPersonSlipSpeed = 0.4, kSlipPower = 3;
-// Of an animal's leg's length: a knee off its line by that tells to which side it bends.
+
+// Lengths of the line from hip to ankle; 0.002 to 0.03; a knee of an animal that is further off it tells to which side
+// it bends; set by hand.
 constexpr double kBentInRest = 0.01;
-constexpr double kSteep = 1.7, kSoleUp = 2.4, kSoftLevel = 0.05;  // radians that toes point down
+// Radians that toes point down; pi / 2 to pi, the first below the second; between them a sole comes to look up, and
+// toes are no longer levelled. The third: 0.02 to 0.2; over which levelling begins. Set by hand.
+constexpr double kSteep = 1.7, kSoleUp = 2.4, kSoftLevel = 0.05;
 
 // How far the lower joint is off the line from the upper one to the end, in lengths of that line.
 Vec3 bendAtRest(const LegJoints& leg, const NeutralPose& neutral) {
@@ -308,7 +327,7 @@ void LimbGoals::keepAboveGround(Leg& leg, const FootLock::Frame& foot, const Foo
 
 void LimbGoals::bendAsSource(Leg& leg, const BodyFrame& target) const {
   const Vec3 hip = target.positions[leg.upper], way = leg.goal - hip;
-  const double own = way.norm(), most = kStretch * leg.length;
+  const double own = way.norm(), most = kMaxStretch * leg.length;
   if (!leg.footDriven || !(own > 0)) return;
   const double free = smoothStep(leg.lift / kLifted), length = own + free * (leg.bentReach - own);
   const double soft = kSoftStanding + free * (kSoftLeg - kSoftStanding);

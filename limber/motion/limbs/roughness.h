@@ -1,6 +1,7 @@
 // How rough a body moves, so that bodies of other proportions can be compared.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "limber/character/matching/retarget_setup.h"
@@ -60,6 +61,8 @@ bool isCut(const RetargetSetup& setup, const std::vector<Vec3>& before, const st
 
 // Whether the third difference that ends in frame `f` is that of a motion: not across a cut, nor before the start.
 bool isWhole(const std::vector<bool>& cuts, std::size_t f);
+// Factors of the values from three frames back to the frame itself: fixed, what a third difference is.
+inline constexpr std::array<double, 4> kThirdDifference = {-1, 3, -3, 1};
 Vec3 thirdDifference(const Path& path, std::size_t f);
 // Sum of the squared whole third differences that end in the frames [begin, end).
 double squaredJerk(const Path& path, const std::vector<bool>& cuts, std::size_t begin, std::size_t end);

@@ -17,6 +17,9 @@ inline double softPositive(double x, double softness) {
   return 0.5 * (x + std::hypot(x, softness));
 }
 
+// Sine; 0.8 to 0.97; for straightenedAsin() of slopes: up to 64 degrees exact; set by hand.
+inline constexpr double kMaxExactSine = 0.9;
+
 // asin(x), but straight on from `until` (below 1) and from its opposite: defined everywhere, without a kink or a pole.
 inline double straightenedAsin(double x, double until) {
   const double inside = std::clamp(x, -until, until);

@@ -27,8 +27,8 @@ class ArmClearance {
   void swing(std::size_t arm, Bone bone, const Vec3& way, BodyFrame& frame, Pose& target) const;
 
  private:
-  static constexpr std::array<double, 5> kAlong = {0, 0.45, 0.75, 1.0,
-                                                   1.3};  // of the forearm from the elbow, and the hand
+  // Forearm lengths from the elbow; 0 to 1.5 (a hand's middle is at 1.3); where depths are probed; set by hand.
+  static constexpr std::array<double, 5> kAlong = {0, 0.45, 0.75, 1.0, 1.3};
   struct Arm {
     Limb limb;
     std::array<double, kAlong.size()> thick = {};   // metres that have to stay outside

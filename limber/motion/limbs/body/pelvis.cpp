@@ -10,25 +10,42 @@ namespace limber {
 
 namespace {
 
-constexpr double kWidthPower = 1.5;  // power of the hips' widths by which their turns are less
+// Exponent; 1 to 2; of the hips' widths, by which the rotations of wider hips are less; set by hand.
+constexpr double kWidthPower = 1.5;
+
 // In hip heights of the target.
-constexpr double kMostShift = 0.3;
-constexpr double kMostAtEnd = 0.15;  // by which feet that cannot reach pull down hips or shoulders: then they lift
-constexpr double kSoftStretch = 0.015, kSoftChange = 0.004;  // of sinking, by how far a foot is moved
-constexpr double kSoftFar = 0.04;   // likewise: of legs at both ends of a body, and foot-driven ones, some are
-                                    // far off and stretch more
-constexpr double kNearLevel = 0.3;  // squared sine of the slope of a person's leg from which on sinking helps it less
-constexpr double kSoftBend = 0.1;   // by which feet of foot-driven legs count the more, the lower they want the body
-constexpr double kStandsBelow = 0.45;  // Leg::lift from which on their bend no longer counts
-constexpr double kSoftFold = 0.02;     // before a leg folds wholly
-constexpr double kStay = 0.5;          // legs that these go against, which want it to stay
-constexpr double kApart = 0.75;        // share of what the bends of legs at both ends want these to move apart
-constexpr double kStretch = 0.998;     // of a leg's length: fully stretched knees pop
-constexpr double kKneesFold = 0.75;    // of Limb::folded: about the nearest that people's feet come to their hips
-// Of the distance to which a leg folds: the depth below its hip at which the pose has a foot that keeps the body above
-// it; the nearer to the level of the hip, the less.
+constexpr double kMostShift = 0.3;  // 0.15 to 0.5; vertical offset of the pelvis; set by hand
+// 0.05 to 0.3; by which feet that cannot reach pull down hips or shoulders, before they lift; set on a fox's gallop on
+// an alpaca, which reared without it.
+constexpr double kMostAtEnd = 0.15;
+// Soft limits of sinking: 0.005 to 0.03, before legs are stretched; 0.002 to 0.01, displacement of a foot that counts
+// half (0.01 gave a jerk of 1.14 times the source's). By jerk on the shared people.
+constexpr double kSoftStretch = 0.015, kSoftChange = 0.004;
+// 0.02 to 0.08; kSoftStretch of legs at both ends of a body and of foot-driven ones, some of which are far off and
+// stretch more; set on a dinosaur's clips on people.
+constexpr double kSoftFar = 0.04;
+// 0.05 to 0.2; by which foot-driven legs count e times as much if they want the body lower; set by hand on farm
+// animals.
+constexpr double kSoftBend = 0.1;
+constexpr double kStandsBelow = 0.45;  // Leg::lift; 0.3 (before) to kLifted; their bend no longer counts; set by hand
+constexpr double kSoftFold = 0.02;     // 0.01 to 0.05; before a leg folds wholly; set by hand
+
+// Squared sine of a leg's slope; 0.1 to 0.5; of a person's leg, below which sinking helps it less; set on a dinosaur's
+// clips on people.
+constexpr double kNearLevel = 0.3;
+constexpr double kStay = 0.5;  // legs; 0.1 to 1; that want the body to stay, against foot-driven ones; set by hand
+// Fraction; 0.5 to 1; of what the bends of legs at both ends want these to move apart; at 1 a fox that gallops as an
+// alpaca reared.
+constexpr double kApart = 0.75;
+// Fraction of Limb::folded; 0.5 to 1; the nearest that people's feet come to their hips; set by hand on boxing and
+// bending.
+constexpr double kKneesFold = 0.75;
+// Fraction of the distance to which a leg folds; 0.2 to 1; how far below its hip the pose has a foot that wholly keeps
+// the body above it (less up to the hip's level); on handstands, kicks and raised legs: bones off by 14 degrees, not
+// 180.
 constexpr double kClearlyBelow = 0.5;
-// Of turning with planted legs: leg lengths, the more the less it does; and radians.
+// Stiffness against rotation by planted legs, leg lengths: 0.05 to 0.5 both, more on one leg; its bound, radians: 0.4
+// to 1.2. By jerk on toys with wide hips (3.3 -> 1.6 times the source's at worst).
 constexpr double kStiffOnTwo = 0.15, kStiffOnOne = 0.3, kMostTurn = 0.8;
 
 Vec3 level(const Vec3& v) {
@@ -185,7 +202,7 @@ double Pelvis::shiftFor(std::span<const Leg> legs, const BodyFrame& frame, const
     const Vec3 hipGoes = hipWay({turn, 0}, leg, frame);
     const Vec3 way = leg.goal - frame.positions[leg.upper] - hipGoes - Vec3(0, rise, 0);
     if (way.y() >= 0) continue;
-    const double length = kStretch * leg.length, across = std::hypot(way.x(), way.z());
+    const double length = kMaxStretch * leg.length, across = std::hypot(way.x(), way.z());
     const double down = std::sqrt(std::max(length * length - across * across, 0.0));
     const double needed =
         followed(leg) * steepness(leg, across, length) * softPositive(-way.y() - down, soft * leg.changed);

@@ -10,11 +10,11 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kLeastSamples = 12;  // of a joint
-// Of a sector: the skin of a limb that was made regular lies on no edge between two, where the last bit of an angle,
-// which compilers' libraries give differently, would tell to which it belongs.
+constexpr std::size_t kLeastSamples = 12;  // samples; 4 to 60; that a joint needs for a tube; set by hand
+// Sectors; 0 to 1, but no simple fraction; the skin of a limb that was made regular lies on no edge between two, where
+// the last bit of an angle, which compilers' libraries give differently, would tell to which it belongs; rounding only.
 constexpr double kOffEdges = 0.13;
-constexpr double kOutermost = 0.9;  // of the samples of one side, the share within its radius
+constexpr double kOutermost = 0.9;  // fraction; 0.5 to 1; of the samples of one side within its radius; set by hand
 
 }  // namespace
 

@@ -27,6 +27,7 @@ class SkinTube {
   double thickness() const;
 
  private:
+  // Pieces; 3 to 10 along the axis, 8 to 24 about it (a cell needs some of a joint's samples); set by hand.
   static constexpr int kRings = 5, kSectors = 12;
   static constexpr std::size_t kCells = std::size_t{kRings} * kSectors;
 

@@ -10,10 +10,11 @@ namespace limber {
 
 namespace {
 
-constexpr double kClearance = 0.03;  // hip heights between the tail's joints and the ground
-constexpr double kSoft = 0.05;       // radians
-constexpr double kBack = 0.1;        // of its length, that counts for where it points at rest
-constexpr double kFine = 0.1;        // how finely the most of what joints ask for is told, radians
+// Set by hand on a cat, whose tail is longer than its legs.
+constexpr double kClearance = 0.03;  // hip heights; 0 to 0.1; between the tail's joints and the ground
+constexpr double kSoft = 0.05;       // radians; 0.02 to 0.2; over which the lift begins without a kink
+constexpr double kBack = 0.1;        // fraction of its length; 0.02 to 0.3; of its direction at rest in its heading
+constexpr double kFine = 0.1;        // radians; 0.03 to 0.3; width of the soft maximum over the tail's joints
 
 Vec3 level(const Vec3& v) {
   return {v.x(), 0, v.z()};

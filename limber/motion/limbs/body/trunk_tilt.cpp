@@ -9,15 +9,13 @@ namespace limber {
 
 namespace {
 
-constexpr double kSteep = 0.9;  // sine of the slope from which on it goes evenly past the vertical
-
 Vec3 wayBetween(const std::vector<Index>& from, const std::vector<Index>& to, const std::vector<Vec3>& positions) {
   return middleOf(to, positions) - middleOf(from, positions);
 }
 
-// Of a trunk as long as 1 that rises by that.
+// Of a trunk as long as 1 that rises by that; past the vertical it goes on evenly.
 double slopeOf(double rise) {
-  return straightenedAsin(rise, kSteep);
+  return straightenedAsin(rise, kMaxExactSine);
 }
 
 }  // namespace

@@ -10,18 +10,21 @@ namespace limber {
 
 namespace {
 
-constexpr double kPlantRate = 9;  // 1/seconds, of strength and flatness
-// A foot rests that is as low and as slow, hip heights (a second), seen over the step to a frame.
+// 1/seconds; 6 to 15; of strength and flatness; by jerk on the shared people (25 and 12 before).
+constexpr double kPlantRate = 9;
+// A foot rests that is as low (hip heights; 0.02 to 0.09) and as slow (hip heights a second; 0.1 to 0.3), seen over the
+// step to a frame; set by hand.
 constexpr double kLow = 0.05, kSlow = 0.15;
-// Speeds of the source's pelvis or feet, hip heights a second, that are no motion but a cut. Many recordings have a
-// T-pose as their first frame.
+// Hip heights a second; 10 to 20, and 3 to 8 in the first frame: many recordings have a T-pose there; speeds of the
+// source's pelvis or feet that are no motion but a cut; set by hand.
 constexpr double kJump = 15, kFirstJump = 4;
 
-// A foot that stands at this speed (hip heights a second, seen over kSeenSeconds to each side) is held by a billionth.
+// A foot that is planted at this speed (hip heights a second; 0.3 to 1; seen over kSeenSeconds to each side) keeps a
+// billionth of its weight (1e-12 to 1e-6); set by hand on the shared motions and people.
 constexpr double kFreeSpeed = 0.6, kFreeFirmness = 1e-9;
-constexpr double kSeenSeconds = 1.0 / 30;  // a frame of the slowest recordings
+constexpr double kSeenSeconds = 1.0 / 30;  // seconds; 0.02 to 0.05; a frame of the slowest recordings
 
-constexpr double kSameMoment = 1e-6;  // seconds, between a frame and the edge of what the user says
+constexpr double kSameMoment = 1e-6;  // seconds; up to a frame; from a frame to the edge of an edit; rounding only
 
 // 0 or 1 without a jump.
 void follow(bool wanted, double seconds, double& value, double& speed) {

@@ -12,14 +12,16 @@ namespace limber {
 
 namespace {
 
-// 1/seconds. Along the ground a foot has to stand at once, down to it and back to where it would be there is time.
-constexpr double kGrip = 80;         // of the shares to which it is free
-constexpr double kFading = 20;       // of the way that it was held back
-constexpr double kSettling = 18;     // of its height over where it has to be
-constexpr double kUntwisting = 10;   // of the twist of a foot that is free to turn
-constexpr double kRolling = 40;      // of the speed left where the point that is held changes
-constexpr double kMostTwist = 0.35;  // radians: a foot that is turned by more is let go
-constexpr double kCaughtUp = 0.25;   // of the slack or the twist: held again from there
+// 1/seconds. Along the ground a foot has to be planted at once, down to it and back to where it would be there is time.
+// By sliding on the shared motions (0.032 -> 0.008 hip heights a second) and by jerk.
+constexpr double kGrip = 80;        // 40 to 120; of the fractions to which it is free
+constexpr double kFading = 20;      // 10 to 40; of the displacement by which it was held back
+constexpr double kSettling = 18;    // 10 to 30; of its height over where it has to be (20 before)
+constexpr double kUntwisting = 10;  // 5 to 20; of the twist of a foot that is free
+constexpr double kRolling = 40;     // 20 to 80; of the speed left where the pinned point changes
+
+constexpr double kMostTwist = 0.35;  // radians; 0.2 to 0.8; a foot that is twisted by more is let go; set by hand
+constexpr double kCaughtUp = 0.25;   // fraction of the slack or the twist; 0 to 1; pinned again below it; set by hand
 
 // Height of the ankle over which the foot settles.
 double baseHeight(const FootLock::Frame& frame, FootAnchor anchor) {

@@ -9,10 +9,11 @@
 namespace limber {
 
 // All lengths in metres of the skeleton that is watched; hip heights make the thresholds independent of its size.
+// Set by hand.
 struct PlantThresholds {
-  double enterSpeed = 0.3, leaveSpeed = 0.7;      // hip heights a second
-  double leaveRise = 0.3;                         // likewise, upward
-  double enterHeight = 0.05, leaveHeight = 0.09;  // hip heights over where the point is when standing
+  double enterSpeed = 0.3, leaveSpeed = 0.7;      // hip heights a second; 0.1 to 1, the first below the second
+  double leaveRise = 0.3;                         // likewise, upward; 0.1 to 0.7
+  double enterHeight = 0.05, leaveHeight = 0.09;  // hip heights over where the point is when standing; 0.02 to 0.15
 };
 
 class PlantDetector {
