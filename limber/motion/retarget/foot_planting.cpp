@@ -9,15 +9,18 @@ namespace limber {
 
 namespace {
 
-constexpr double kHold = 1e5;  // of a planted foot's speed along the ground (hip heights a second), squared
-// Hip heights, over which it is seen how bones follow a foot: without the kink of legs that are nearly straight.
+// All by the judge on half of the shared motions.
+// Weight of a planted foot's squared speed along the ground (hip heights a second); 1e3 to 1e6.
+constexpr double kHold = 1e5;
+// Hip heights; 0.05 to 0.3; over which it is seen how bones follow a foot, without the kink of nearly straight legs.
 constexpr double kBoneProbe = 0.2;
-constexpr double kAheadSeconds = 0.5;  // that each part sees of the next
+constexpr double kAheadSeconds = 0.5;  // seconds; 0.3 to 2, several times kChangeSeconds; that a part sees of the next
 
-// ChangeWeights: the pelvis rises and sinks freely, so that legs keep their bend; it hardly goes aside. A foot has no
-// place of its own: its leg's bones tell where it is to be.
+// ChangeWeights, against kBones = 1: the pelvis rises and sinks freely, so that legs keep their bend (0 to 0.1), and
+// hardly goes aside (1 to 100). A foot has no position of its own (0 to 0.1): its leg's bones tell where it is to be. A
+// planted one keeps its height (1e3 to 1e6). By the judge, too.
 constexpr double kPelvisLevel = 10, kPelvisUp = 0.02, kFeet = 0.02, kBones = 1, kRest = 3e4;
-constexpr int kRounds = 8;
+constexpr int kRounds = 8;  // solves; 3 to 20; in which bounds are found; set by hand
 
 ChangeWeights weightsFor(double frameSeconds) {
   ChangeWeights weights;

@@ -9,10 +9,12 @@
 namespace limber {
 
 namespace planting {
-// Seconds in which changes come and go: of the pelvis and of legs' bones, of feet's twists.
+// By the judge on half of the shared motions. Seconds; 0.03 to 0.15; in which changes come and go: of the pelvis and of
+// legs' bones, of feet's twists.
 inline constexpr double kChangeSeconds = 0.06, kTwistSeconds = 0.05;
-inline constexpr double kTwistHold = 1e8;    // of a planted foot's turn from frame to frame, radians, squared
-inline constexpr double kStretched = 0.995;  // of its length to which a leg stretches: straight knees tremble
+// Weight of a planted foot's squared rotation from frame to frame, radians; 1e6 to 1e10, far above that of jerk.
+inline constexpr double kTwistHold = 1e8;
+inline constexpr double kStretched = 0.995;  // leg lengths; 0.98 to kMaxStretch; a leg's reach: straight knees tremble
 }  // namespace planting
 
 struct FootPlanting {

@@ -8,12 +8,12 @@ namespace limber {
 
 namespace {
 
-// Of what has to hold, against changes in hip heights: planted feet, bounds, and frames that do not change.
+// Weight of what has to hold (planted feet, bounds, frames that do not change) against squared changes in hip heights;
+// 1e6 to 1e10, between what is seen and what is lost in rounding; set by hand.
 constexpr double kFirmWeight = 1e8;
-constexpr double kFirmUpTo = 1e6;    // the weight of jerk; it is more for more
-constexpr double kLoopWeight = 100;  // that a loop closes, against the rest of it
-constexpr double kTooFar = 1e-5;     // hip heights
-constexpr std::array<double, 4> kThird = {-1, 3, -3, 1};
+constexpr double kFirmUpTo = 1e6;    // weight of jerk; 1e4 to kFirmWeight; above it that weight grows; set by hand
+constexpr double kLoopWeight = 100;  // times that weight; 10 to 1000; that a loop closes; set by hand
+constexpr double kTooFar = 1e-5;     // hip heights; 1e-6 to 1e-4; by which bounds may be missed, below what is seen
 
 double axisOf(const Vec3& v, std::size_t axis) {
   return v[static_cast<Eigen::Index>(axis)];
@@ -88,7 +88,8 @@ void LeastChanges::countThirds() {
   for (std::size_t f = 3; f < layout_.frames(); ++f) {
     if (!isWhole(cuts_, f)) continue;
     for (std::size_t t = 0; t < 4; ++t) {
-      for (std::size_t back = 0; back <= t; ++back) meets_[f - 3 + t][back] += kThird[t] * kThird[t - back];
+      for (std::size_t back = 0; back <= t; ++back)
+        meets_[f - 3 + t][back] += kThirdDifference[t] * kThirdDifference[t - back];
     }
   }
 }

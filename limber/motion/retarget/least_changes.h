@@ -35,8 +35,10 @@ class ChangeLayout {
 };
 using Changes = std::vector<double>;  // by such a layout
 
-inline constexpr std::size_t kPartFrames = 1000;  // about so many of a motion in one solve: its memory is bounded
-inline constexpr std::size_t kJoinedFrames = 3;   // that a part shares with another: third differences reach no further
+// Frames; 200 to 10000; about so many of a motion are in one solve: bounds memory; set by hand.
+inline constexpr std::size_t kPartFrames = 1000;
+// Frames that a part has in common with another: third differences reach no further.
+inline constexpr std::size_t kJoinedFrames = kThirdDifference.size() - 1;
 
 Vec3 wayAt(const Changes& changes, std::size_t first);
 

@@ -14,8 +14,6 @@ namespace limber {
 
 namespace {
 
-constexpr double kOutRate = 8;  // 1/seconds, of arms that give way
-
 class LimbIkRetargeter : public FrameRetargeter {
  public:
   explicit LimbIkRetargeter(const RetargetSetup& setup)
@@ -66,7 +64,7 @@ class LimbIkRetargeter : public FrameRetargeter {
     for (std::size_t i = 0; i < clearance_.arms(); ++i) {
       for (const ArmClearance::Bone bone : {ArmClearance::Bone::kUpper, ArmClearance::Bone::kForearm}) {
         Sprung& follow = waysOut_[i][static_cast<std::size_t>(bone)];
-        follow.drawTo(clearance_.wayOut(i, bone, to()), kOutRate, seconds);
+        follow.drawTo(clearance_.wayOut(i, bone, to()), kArmRate, seconds);
         clearance_.swing(i, bone, follow.value, to(), target);
       }
     }

@@ -13,15 +13,19 @@ namespace limber {
 
 namespace {
 
-constexpr double kJerkLimit = 1.08;  // jerk, times the source's
-constexpr double kLoops = 0.02;      // of a limb's bones, between the directions in the first and the last frame
-// Jerk counts as for changes that come and go in that time, seconds; ever longer until the motion is smooth, and up to
-// that many frames: longer ones leave sums whose weights cannot be told apart.
+// Times the source's jerk; 1 to 1.1; set just below 1.1, which every shared pair of a motion and a person keeps to.
+constexpr double kJerkLimit = 1.08;
+// Bone lengths; 0.005 to 0.05; between a bone's directions in the first and the last frame of a loop; set by hand.
+constexpr double kLoops = 0.02;
+// Jerk counts as for changes that come and go in that time: the shortest (seconds; 0.003 to 0.02), each kLonger times
+// the one before (1.05 to 1.5) until the motion is smooth, and up to so many frames (10 to 40): longer ones leave sums
+// whose weights are lost in rounding. Set by hand.
 constexpr double kShortest = 0.007, kLonger = 1.2, kMostFrames = 30;
-constexpr double kFurthest = 0.15;  // of any change, hip heights: further ones flatten what is meant
-constexpr double kStretch = 0.998;  // of a leg's length
-constexpr double kProbe = 1e-4;     // hip heights to each side, over which the slopes of bones are seen
-constexpr int kHalvings = 4;        // of a step that made the motion rougher
+// Hip heights; 0.05 to 0.3; of any change; by the judge on half of the shared motions (0.3 before: flattened what is
+// meant).
+constexpr double kFurthest = 0.15;
+constexpr double kProbe = 1e-4;  // hip heights; 1e-6 to 1e-3; to each side, for the slopes of bones; rounding only
+constexpr int kHalvings = 4;     // 2 to 8; of a step that made the motion rougher; set by hand
 
 class MotionSmoother {
  public:
@@ -85,7 +89,7 @@ class MotionSmoother {
     FootFrame foot;
     foot.lowest = unit * std::min(ground - end.y(), 0.0);
     foot.way = unit * (end - frame_.positions[leg.upper]);
-    foot.most = std::max(unit * kStretch * leg.length, foot.way.norm());
+    foot.most = std::max(unit * kMaxStretch * leg.length, foot.way.norm());
     if (trunk_.isFore(leg.upper)) foot.lift = TrunkTilt::liftOf(trunk_.trunkOf(frame_));
     return foot;
   }

@@ -13,7 +13,9 @@ namespace limber {
 
 namespace {
 
-constexpr double kMoved = 1e-7;  // of a translation, metres; of a rotation's components
+// Metres of a translation, and of a rotation's components; 1e-9 to 1e-5; joints that move less have no track; rounding
+// only.
+constexpr double kMoved = 1e-7;
 
 Quat nearTo(const Quat& rotation, const Quat& before) {
   return rotation.dot(before) < 0 ? Quat(-rotation.coeffs()) : rotation;

@@ -18,9 +18,10 @@ namespace limber {
 
 namespace {
 
-// Seconds in which changes come and go: of foot-driven legs, of which little is left to change, of hands.
+// Seconds; 0.05 to 0.2; in which changes come and go: of foot-driven legs, of which little is left to change, and of
+// hands (0.1 before). By the judge on half of the shared motions.
 constexpr double kFootDrivenSeconds = 0.13, kHandSeconds = 0.12;
-constexpr double kFootDrivenRest = 0.1;  // how firmly a foot-driven foot keeps its height, 0 to 1
+constexpr double kFootDrivenRest = 0.1;  // fraction; 0 to 1; how firmly a foot-driven foot keeps its height; likewise
 
 Vec3 level(const Vec3& v) {
   return {v.x(), 0, v.z()};
