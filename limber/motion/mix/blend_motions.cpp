@@ -17,9 +17,10 @@ namespace limber {
 
 namespace {
 
-constexpr int kMostRepeats = 64;  // of a motion that loops
-constexpr double kSamePhase = 1e-6;
-// Strides a second grow fourfold from a stroll (0.55) to a sprint (2.2): beyond that no two are gaits of one body.
+constexpr int kMostRepeats = 64;     // repeats; 8 to 1000; of a motion that loops: bounds memory; set by hand
+constexpr double kSamePhase = 1e-6;  // footfalls; 1e-9 to 1e-3; rounding only
+// Ratio; 2 to 4; strides a second grow fourfold from a stroll (0.55) to a sprint (2.2): beyond that no two are gaits of
+// one body.
 constexpr double kMostRateRatio = 4;
 
 // What the blend plays: both motions, repeated where they loop, on one scale.

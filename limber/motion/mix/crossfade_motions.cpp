@@ -9,6 +9,7 @@
 #include "limber/core/error.h"
 #include "limber/motion/mix/hold_pose.h"
 #include "limber/motion/mix/plant_mixed_feet.h"
+#include "limber/motion/mix/pose_curve.h"
 #include "limber/motion/mix/transition.h"
 #include "limber/skeleton/motion.h"
 
@@ -16,8 +17,8 @@ namespace limber {
 
 namespace {
 
-constexpr double kAround = 1;  // seconds before the transition, and after feet have lifted off: they change there
-constexpr double kLastMoment = 1e-9;  // seconds
+// Seconds; 0.3 to 2; before the transition, and after feet have lifted off: changes come and go there; set by hand.
+constexpr double kAround = 1;
 
 // The first motion alone, both, the second alone.
 std::vector<MixMoment> allMoments(const Transition& transition, double bDuration, double frameSeconds) {
@@ -26,7 +27,7 @@ std::vector<MixMoment> allMoments(const Transition& transition, double bDuration
   const double before = std::round(begin / frameSeconds);
   for (double f = 0; f < before; ++f) moments.push_back({f * frameSeconds, std::nullopt, 0});
   moments.insert(moments.end(), transition.moments.begin(), transition.moments.end());
-  for (double f = 1; end + f * frameSeconds <= bDuration + kLastMoment; ++f) {
+  for (double f = 1; end + f * frameSeconds <= bDuration + kSameTime; ++f) {
     moments.push_back({std::nullopt, end + f * frameSeconds, 1});
   }
   return moments;

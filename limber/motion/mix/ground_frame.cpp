@@ -8,7 +8,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kStraight = 1e-8;  // radians: a step that turns by less is a straight one
+constexpr double kStraight = 1e-8;  // radians; 1e-12 to 1e-6; a step that turns by less is straight; rounding only
 
 double wrapped(double angle) {
   return angle - 2 * kPi * std::round(angle / (2 * kPi));

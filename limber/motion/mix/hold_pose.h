@@ -5,8 +5,6 @@
 
 namespace limber {
 
-inline constexpr double kWholeFrame = 1e-6;  // of a frame's length: a frame that lacks less is whole
-
 // Whether nothing moves: one key, or keys that are all the same within 1e-4 (metres, components of quaternions).
 bool isStill(const Clip& clip);
 

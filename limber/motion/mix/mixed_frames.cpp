@@ -12,11 +12,12 @@ namespace limber {
 
 namespace {
 
-// Of the longer of two spans, that they overlap where they are one contact: a walk's and a run's do by 0.56.
+// Fraction of the longer of two spans; 0.2 to 0.55; by which they overlap where they are one contact: a walk's and a
+// run's do by 0.56 (measured).
 constexpr double kTogether = 0.4;
-constexpr double kCounts = 0.2;               // the weight from which on a motion tells what is planted
-constexpr double kOnePlace = 0.2;             // hip heights, between the places of a foot that is planted in both
-constexpr double kSameDirection = 1 - 1e-13;  // cosine of half the angle between them
+constexpr double kCounts = 0.2;    // weight; 0 to 0.5; from there on a motion says what is planted; set by hand
+constexpr double kOnePlace = 0.2;  // hip heights; 0.1 to 0.5; between a foot's positions, planted in both; set by hand
+constexpr double kSameDirection = 1 - 1e-13;  // cosine of half an angle; 1 - 1e-10 to below 1; rounding only
 
 // One of the motions in one frame.
 struct PartFrame {

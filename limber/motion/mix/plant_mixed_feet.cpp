@@ -10,8 +10,8 @@ namespace limber {
 
 namespace {
 
-constexpr double kUnseen = 1e-5;       // hip heights: a frame with changes below that stays as it is, bit for bit
-constexpr double kUnseenTwist = 1e-5;  // radians
+// Hip heights, and radians; 1e-7 to 1e-4; a frame with smaller changes stays as it is, bit for bit; below what is seen.
+constexpr double kUnseen = 1e-5, kUnseenTwist = 1e-5;
 
 double levelLength(const Vec3& v) {
   return std::hypot(v.x(), v.z());

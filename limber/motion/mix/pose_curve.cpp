@@ -8,8 +8,8 @@ namespace limber {
 
 namespace {
 
-constexpr double kAtFrame = 1e-6;  // of a frame's length
-constexpr double kFlip = 0.924;    // cosine of half the angle
+// Cosine of half an angle; 0.7 to 0.98; below it, by more than 45 degrees in a frame, a joint has flipped; set by hand.
+constexpr double kFlip = 0.924;
 
 // How much the frames at -1, 0, 1, 2 count between 0 and 1. At an end of the motion the speed is that of the parabola
 // through the last three.
@@ -44,7 +44,7 @@ void PoseCurve::sample(double seconds, Pose& pose) const {
   const std::vector<Pose>& poses = frames_.poses;
   const double last = static_cast<double>(poses.size() - 1), at = std::clamp(seconds / frames_.frameSeconds, 0.0, last);
   const double near = std::round(at);
-  if (std::abs(at - near) < kAtFrame) {
+  if (std::abs(at - near) < kWholeFrame) {
     pose = poses[static_cast<std::size_t>(near)];
     return;
   }

@@ -8,6 +8,10 @@
 
 namespace limber {
 
+// Frame lengths; 1e-9 to 1e-3; a time that is less off a frame is at it, and a frame that lacks less is whole; rounding
+// only.
+inline constexpr double kWholeFrame = 1e-6;
+
 // How much which frames count at a moment between frames: with the speeds of Catmull-Rom (1974), at an end that of the
 // parabola through the last three. `at` in frames, from 0 to the last.
 struct CurveShares {

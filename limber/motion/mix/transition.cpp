@@ -15,9 +15,8 @@ namespace limber {
 
 namespace {
 
-constexpr double kReach = 1;       // seconds into either motion
-constexpr double kForeseen = 0.1;  // how far speeds tell where joints will be
-constexpr double kMoment = 1e-9;   // seconds
+constexpr double kReach = 1;       // seconds; 0.5 to 3; into either motion, about a stride; set by hand
+constexpr double kForeseen = 0.1;  // seconds; 0.03 to 0.3; for which joints go on at their speeds; set by hand
 
 // 0 to 1.
 double leastJerk(double u) {
@@ -34,12 +33,12 @@ class SeenFrames {
  public:
   SeenFrames(const MixBody& body, const MixMotion& motion, double from, double to, double frameSeconds)
       : from_(from), step_(frameSeconds) {
-    const auto frames = static_cast<std::size_t>(std::floor((to - from) / frameSeconds + kMoment)) + 1;
+    const auto frames = static_cast<std::size_t>(std::floor((to - from) / frameSeconds + kSameTime)) + 1;
     std::vector<std::vector<TimeSpan>> spans;
     for (const Leg& leg : body.legs()) spans.push_back(motion.planted(leg.end));
     for (std::size_t f = 0; f < frames; ++f) {
       const double now = from + static_cast<double>(f) * frameSeconds;
-      const bool isLast = now + frameSeconds > motion.duration() + kMoment;
+      const bool isLast = now + frameSeconds > motion.duration() + kSameTime;
       const double other = isLast ? now - frameSeconds : now + frameSeconds;
       const GroundFrame ground = motion.groundAt(now);
       Seen& seen = frames_.emplace_back();
@@ -49,7 +48,7 @@ class SeenFrames {
       for (std::size_t j = 0; j < moved.size(); ++j) seen.ahead[j] += share * (moved[j] - seen.places[j]);
       for (const std::vector<TimeSpan>& of : spans) {
         seen.planted.push_back(std::any_of(of.begin(), of.end(), [&](const TimeSpan& span) {
-          return span.from <= now + kMoment && now <= span.to + kMoment;
+          return span.from <= now + kSameTime && now <= span.to + kSameTime;
         }));
       }
     }
@@ -113,16 +112,16 @@ class TransitionSearch {
 
  private:
   std::size_t wholeFrames(double seconds) const {
-    return static_cast<std::size_t>(std::max(1.0, std::floor(seconds / frameSeconds_ + kMoment)));
+    return static_cast<std::size_t>(std::max(1.0, std::floor(seconds / frameSeconds_ + kSameTime)));
   }
 
   double firstFrame(const TransitionOptions& options) const {
     const double reach = std::min(kReach, (a_.duration() - options.from - options.seconds) / 2);
     const double lasts = static_cast<double>(frames_) * frameSeconds_;
-    const double first = std::floor((a_.duration() - lasts - reach) / frameSeconds_ + kMoment);
+    const double first = std::floor((a_.duration() - lasts - reach) / frameSeconds_ + kSameTime);
     if (options.from <= 0) return std::max(first, 0.0);
-    const double latest = std::floor((a_.duration() - lasts) / frameSeconds_ + kMoment);
-    return std::max(first, std::min(latest, std::floor(options.from / frameSeconds_ + kMoment) + 1));
+    const double latest = std::floor((a_.duration() - lasts) / frameSeconds_ + kSameTime);
+    return std::max(first, std::min(latest, std::floor(options.from / frameSeconds_ + kSameTime) + 1));
   }
 
   // Each at its own speed: a phase is a second.
@@ -150,13 +149,13 @@ class TransitionSearch {
 
   void consider(const StridePhases& phases, double frame) {
     const double begin = phases.b.when(phases.a.at(frame * frameSeconds_));
-    if (begin < -kMoment || begin > bReach_ + kMoment) return;
+    if (begin < -kSameTime || begin > bReach_ + kSameTime) return;
     std::vector<MixMoment> moments = played(phases, frame, 1);
     // The rest of b is on its own frames.
     const double end = *moments.back().b, onFrame = std::round(end / b_.frameSeconds()) * b_.frameSeconds();
-    moments = played(phases, frame, (onFrame - begin) / std::max(end - begin, kMoment));
+    moments = played(phases, frame, (onFrame - begin) / std::max(end - begin, kSameTime));
     moments.back().b = onFrame;
-    if (*moments.back().a > a_.duration() + kMoment || onFrame > b_.duration() + kMoment) return;
+    if (*moments.back().a > a_.duration() + kSameTime || onFrame > b_.duration() + kSameTime) return;
     const auto at = [&](std::size_t f) { return std::pair(&ofA_.at(*moments[f].a), &ofB_.at(*moments[f].b)); };
     double distance = 0;
     for (const std::size_t f : {std::size_t{0}, frames_ / 2, frames_}) {
@@ -197,7 +196,7 @@ Transition findTransition(const MixBody& body, const MixMotion& a, const MixMoti
   // What fits but for the frames of either may not fit with them.
   TransitionOptions shorter = options;
   shorter.seconds = std::min(options.seconds, shortest);
-  for (; shorter.seconds > step - kMoment; shorter.seconds -= step) {
+  for (; shorter.seconds > step - kSameTime; shorter.seconds -= step) {
     if (std::optional<Transition> found = TransitionSearch(body, a, b, shorter).run()) return std::move(*found);
   }
   throw refusal(fmt::format("a motion of {:.3g} s is too short for a transition", shortest), "leave it out");

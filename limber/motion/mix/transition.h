@@ -5,6 +5,9 @@
 
 namespace limber {
 
+// Seconds, and frames; 1e-12 to 1e-6; between times that are the same; rounding only.
+inline constexpr double kSameTime = 1e-9;
+
 struct Transition {
   StridePhases phases;
   std::vector<MixMoment> moments;  // its frames: the first all of a, the last all of b

@@ -8,8 +8,8 @@ namespace limber {
 
 namespace {
 
-constexpr double kSwing = 0.2;      // of the hips' height, there and back
-constexpr double kOnTheSpot = 0.1;  // hip heights a second, below which a body goes nowhere
+constexpr double kSwing = 0.2;      // hip heights; 0.1 to 0.4; of a foot, there and back; set by hand
+constexpr double kOnTheSpot = 0.1;  // hip heights a second; 0.05 to 0.3; a slower body goes nowhere; set by hand
 
 // Where it goes on the whole, in its own frame.
 Vec3 directionOf(const std::vector<GroundFrame>& ground, double frameSeconds, double hipHeight) {

@@ -10,8 +10,8 @@ namespace limber {
 
 namespace {
 
-constexpr double kShortest = 1e-3;  // seconds, that a motion without footfalls is taken to last
-constexpr int kMostRounds = 60;
+constexpr double kShortest = 1e-3;  // seconds; above 0, up to a frame; least length without footfalls; rounding only
+constexpr int kMostRounds = 60;     // 53 (bits of a double) and more: halving alone ends by then
 
 }  // namespace
 

@@ -9,8 +9,8 @@ namespace {
 
 using Falls = std::vector<Footfall>;
 
-// Of two feet that come down at once the later one counts as a moment later, far below what is seen.
-constexpr double kSameMoment = 1e-4;  // seconds
+// Seconds; 1e-6 to 1e-3; of two feet that come down at once the later one counts as so much later: below what is seen.
+constexpr double kSameMoment = 1e-4;
 
 std::vector<double> momentsOf(const Falls& falls) {
   std::vector<double> moments;
