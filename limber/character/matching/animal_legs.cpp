@@ -9,9 +9,11 @@ namespace limber {
 
 namespace {
 
-constexpr double kStands = 0.3;  // mean height, in mean distances along the ground: a snake's is less
+// Mean height over mean distance along the ground; 0.2 to 0.5; a snake's is less, a bird's more whatever its wings; set
+// by hand.
+constexpr double kStands = 0.3;
 
-constexpr Index kMostPairs = 2;  // of legs that are solved for; more go by their joint angles
+constexpr Index kMostPairs = 2;  // pairs; 2 alone (hind and fore); that are solved for; more go by their joint angles
 
 // The matched joints of one leg, hip to toes.
 struct MatchedLeg {
@@ -39,10 +41,10 @@ std::optional<Index> carrierOf(const Skeleton& skeleton, Index lower, const std:
   return isAncestorOrSelf(skeleton, lower, end) ? std::nullopt : std::optional(last.back());
 }
 
-// In mean heights of the matched joints, over the lowest of them.
-constexpr double kLow = 0.2;      // of where a leg stands, at most
-constexpr double kBegins = 0.35;  // of its hip or shoulder, at least
-constexpr double kSteep = 1;      // how far down it goes for each metre along, at least
+// In mean heights of the matched joints, over the lowest of them; set by hand.
+constexpr double kLow = 0.2;      // 0.1 to kBegins; of where a leg stands, at most
+constexpr double kBegins = 0.35;  // kLow to 0.7; of its hip or shoulder, at least
+constexpr double kSteep = 1;      // slope, down over along; 0.5 to 2; of a leg, at least (45 degrees); set by hand
 
 struct HeightsOf {
   const SkeletonMap& map;

@@ -9,10 +9,11 @@ namespace limber {
 
 namespace {
 
-// Fractions of the extent of the body's joints. Controls rest at the very position of their joints, but for rounding
-// (1e-6 in the files seen); fingers begin 0.02 from the wrist.
+// Fractions of the extent of the body's joints.
+// 1e-5 to 0.01; controls rest at the very position of their joints, but for rounding (1e-6 in the files seen); fingers
+// begin 0.02 from the wrist.
 constexpr double kSamePosition = 0.005;
-constexpr double kNear = 0.1;
+constexpr double kNear = 0.1;  // 0.05 to 0.2; joints further off stay behind; set on a walking machine's claws
 
 class LooseFinder {
  public:

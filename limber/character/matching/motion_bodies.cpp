@@ -14,9 +14,9 @@ namespace limber {
 
 namespace {
 
-constexpr Index kFewJoints = 7;     // of a body: a trunk, and two legs of three joints
-constexpr double kTogether = 0.05;  // of a body's size, between hips that never come farther apart
-constexpr int kMoments = 16;        // of a clip, at which hips are compared
+constexpr Index kFewJoints = 7;     // joints; 7 alone; of a body: a trunk, and two legs of three joints
+constexpr double kTogether = 0.05;  // body sizes; 0.01 to 0.2; between hips of one body, over the clip; set by hand
+constexpr int kMoments = 16;        // frames of a clip; 8 to 100; at which hips are compared; set by hand
 
 // The joints that are kept, as numbers of the new skeleton.
 using NewIndex = std::vector<std::optional<Index>>;  // #J
@@ -95,7 +95,7 @@ std::string listOf(const Motion& motion, const std::vector<Index>& roots) {
 }
 
 std::optional<std::size_t> numberIn(std::string_view text) {
-  constexpr std::size_t kMaxDigits = 6;
+  constexpr std::size_t kMaxDigits = 6;  // digits; 1 to 9; more might not fit an unsigned long
   const bool isNumber = !text.empty() && text.size() <= kMaxDigits &&
                         std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
   return isNumber ? std::optional<std::size_t>(std::stoul(std::string(text))) : std::nullopt;

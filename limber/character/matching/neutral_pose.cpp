@@ -14,22 +14,25 @@ namespace limber {
 
 namespace {
 
-// A foot goes along with a shin that is turned by more. One that is about as long as its shin does not where the leg
-// comes down from the hip as straight: it ends in a hock, and stands as birds' do.
+// Radians; 15 to 40 degrees; a foot goes along with a shin that is turned by more; set by hand. One that is about as
+// long as its shin does not where the leg comes down from the hip as straight: it ends in a hock, and stands as birds'
+// do.
 constexpr double kFootGoesAlong = 25 * kPi / 180;
-constexpr double kHock = 0.75;                // foot over shin
-constexpr double kBent = 1.03;                // times the way from end to end
-constexpr double kNearAxis = 20 * kPi / 180;  // from an axis of space: makers mean it
-// A trunk, and a neck, that lean by more are bent: artists build upright ones with less.
-constexpr double kStoops = 25 * kPi / 180;
-constexpr double kBows = 45 * kPi / 180;  // of the neck, from upright
-// What arms and legs of people are long, over the way from the hips to the neck.
+constexpr double kHock = 0.75;  // foot over shin; 0.6 to 0.9; set by hand on a walking machine with a bird's legs
+constexpr double kBent = 1.03;  // length over distance from end to end; 1.01 to 1.1; of a bent chain; set by hand
+constexpr double kNearAxis = 20 * kPi / 180;  // radians; 10 to 30 degrees; from an axis that is meant; set by hand
+// Radians from upright; 15 to 45 and 30 to 60 degrees; a trunk, and a neck, that lean by more are bent: artists build
+// upright ones with less; set by hand on statues.
+constexpr double kStoops = 25 * kPi / 180, kBows = 45 * kPi / 180;
+// Lengths of people's arms and legs over that from the hips to the neck; 0.4 to 2 and 0.6 to 3; what artists
+// build, with a margin; set by hand.
 struct Range {
   double least, most;
   bool has(double value) const { return value > least && value < most; }
 };
 constexpr Range kArms{0.6, 1.5}, kLegs{0.8, 2.1};
-constexpr double kOpposite = 100 * kPi / 180;  // between the ways from the hips to the head and to the feet, at least
+// Radians; 90 to 130 degrees; least angle at the hips between the head and the feet of who stands; set by hand.
+constexpr double kOpposite = 100 * kPi / 180;
 
 using body_part::arm;
 using body_part::leg;

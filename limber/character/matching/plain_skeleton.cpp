@@ -40,7 +40,7 @@ void PlainSkeleton::mirror(Transform& local, Index joint) const {
 
 // What a parent's scale, against that at rest, does to the place of what hangs on it.
 void PlainSkeleton::takeScales(Pose& pose) const {
-  constexpr double kScaled = 1e-3;  // less is rounding
+  constexpr double kScaled = 1e-3;  // ratio to the rest's, less 1; 1e-5 to 1e-2; less is rounding
   std::vector<double> factors;      // of each joint for its children
   for (Index j = 0; j < skeleton_.jointCount(); ++j) {
     const std::optional<Index>& parent = skeleton_.joints[j].parent;

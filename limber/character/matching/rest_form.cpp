@@ -14,13 +14,13 @@ namespace limber {
 
 namespace {
 
-// Fraction of the bones' length, by the squared sine between bone and line, that may point away from the line: 0.02 is
-// 8 degrees for all of them. People in T-pose have 0.3 and more, with arms and legs hanging parallel 0.1 by their feet;
-// zeroed axes have 0.
+// Fraction of the bones' length, by the squared sine between bone and line; 0.001 to 0.1; that may point away from the
+// line: 0.02 is 8 degrees for all of them. Measured: people in T-pose have 0.3 and more, with arms and legs hanging
+// parallel 0.1 by their feet; zeroed axes have 0.
 constexpr double kOffLine = 0.02;
-constexpr std::size_t kMinLimbs = 4;      // chains; snakes and fish are straight and have a form all the same
-constexpr std::size_t kMinLimbBones = 2;  // thigh and shin
-constexpr int kMaxMoments = 100;          // of each clip
+constexpr std::size_t kMinLimbs = 4;      // chains; 3 to 4; snakes and fish are straight and have a form all the same
+constexpr std::size_t kMinLimbBones = 2;  // bones; 2 alone: thigh and shin
+constexpr int kMaxMoments = 100;          // frames of each clip; 20 to 1000; bounds time; set by hand
 
 // #J, the joint in which each joint's bone ends: the only child, or the only one that has children itself. Twist joints
 // and tips beside it carry nothing.
@@ -78,7 +78,8 @@ Pose turnedAboutY(const Skeleton& skeleton, Pose pose, double radians) {
 // Turned so that the body's left is +X, as files have it at rest: where up and ahead are not sure, readAnatomy goes by
 // that habit, which a frame under way does not keep. Which of both sides is left is surest where names agree with it.
 Pose turnedAhead(const Skeleton& skeleton, const Pose& pose) {
-  constexpr double kMinLevel = 0.5;  // of the left's length: one who lies on a side is left as it is
+  // Fraction of the left's length; 0.3 to 0.8; one who lies on a side stays as it is; set by hand.
+  constexpr double kMinLevel = 0.5;
   const Vec3 left = readAnatomy(skeleton, pose).axes.left();
   if (std::hypot(left.x(), left.z()) < kMinLevel) return pose;
   const double radians = std::atan2(left.z(), left.x());

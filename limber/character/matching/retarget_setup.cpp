@@ -13,12 +13,15 @@ namespace limber {
 
 namespace {
 
-// A motion whose feet come this near to where they are in rest pose (in hip heights) stands on the rest pose's ground.
+// Hip heights; 0.03 to 0.15; a motion whose feet come this near to where they are in rest pose stands on the rest
+// pose's ground; set by hand (0.015 before).
 constexpr double kSameGround = 0.08;
-constexpr double kFlies = 0.5;         // hip heights over the origin: from there on a rest pose does not stand on it
-constexpr double kStill = 0.4;         // hip heights a second: a lowest foot joint slower than this stands
-constexpr double kFewStand = 0.05;     // share of frames; below it the motion never stands (a run)
-constexpr double kBelowGround = 0.05;  // share of frames that may lie lower than the ground, for noise
+// Hip heights over the origin; 0.3 to 0.9; from there on a rest pose does not stand on it; set on a swimmer's clip.
+constexpr double kFlies = 0.5;
+// Set by hand.
+constexpr double kStill = 0.4;         // hip heights a second; 0.2 to 0.7; a lowest foot joint slower than this stands
+constexpr double kFewStand = 0.05;     // fraction of frames; 0.01 to 0.2; below it the motion never stands (a run)
+constexpr double kBelowGround = 0.05;  // fraction of frames; 0 to 0.1; that may lie below the ground, for noise
 
 double lowest(const std::vector<Index>& joints, const std::vector<Vec3>& positions) {
   double y = std::numeric_limits<double>::infinity();
@@ -236,7 +239,7 @@ RetargetSetup::RetargetSetup(const Skeleton& from, const Skeleton& to, SkeletonM
 
 // All bones alike, of whatever size; the rounding of scales that are not even is no difference.
 bool RetargetSetup::isTwin(const Twins& twins) const {
-  constexpr double kOff = 1e-4;  // hip heights of the target, and of its size
+  constexpr double kOff = 1e-4;  // hip heights of the target, and ratio of sizes; 1e-6 to 1e-3; rounding only
   if (std::abs(scale / twins.scale - 1) > kOff) return false;
   const std::vector<Vec3> from = posePositions(*source, turnedAlone(*source, sourceRest)),
                           to = posePositions(*target, targetRest);

@@ -22,12 +22,13 @@ namespace limber {
 
 namespace {
 
-// Matches that are needed at least, with names for some of them and by form alone.
+// Matches; 2 to 5, 5 to 10; that are needed at least, with names for some of them and by form alone; set by hand.
 constexpr std::size_t kFewNamed = 3, kFewByForm = 7;
-constexpr double kEqualTrees = 0.5;    // confidence of joints that are matched by their number in equal trees alone
+// Confidences, 0 to 1: below kDoubtful they are listed as doubtful; set by hand.
+constexpr double kEqualTrees = 0.5;    // of joints that are matched by their number in equal trees alone
 constexpr double kEqualNames = 0.9;    // of names that are equal but for their case, separators and prefixes
-constexpr double kOneOfSeveral = 0.5;  // confidence at most of one palm joint, or pelvis, of several
-constexpr double kFingerByForm = 0.7;  // confidence at most: form does not tell a finger's tip from its last bone
+constexpr double kOneOfSeveral = 0.5;  // at most, of one palm joint, or pelvis, of several
+constexpr double kFingerByForm = 0.7;  // at most: form does not tell a finger's tip from its last bone
 
 std::string plainName(std::string_view name) {
   if (const std::size_t space = name.find_last_of(":|"); space != std::string_view::npos) name.remove_prefix(space + 1);
@@ -323,7 +324,7 @@ class Matcher {
   // Not the end of a foot's bone, that never turns; nor where one foot is raised at rest, as in a file that begins in
   // the middle of a step: how it stands is not known then.
   bool toesTell(const Skeleton& skeleton, const BodyPieces& body, const LimbPieces& leg, std::size_t toes) const {
-    // Of the body's size: feet of shared bodies that stand differ by 0.002 at most, others by 0.02.
+    // Body sizes; 0.003 to 0.015; measured: feet of shared bodies that stand differ by 0.002 at most, others by 0.02.
     constexpr double kRaised = 0.006;
     const bool isEnd = toes + 1 == leg.joints.size() &&
                        readJointWords(readNameOf(skeleton.joints[leg.joints[toes]])).has(NameMark::kEnd);
@@ -386,7 +387,8 @@ class Matcher {
   // Hip bones of people carry nothing of their own; blades that lie otherwise would take the legs elsewhere.
   bool alikeBases(const std::vector<Index>& from, const std::vector<Index>& to, const auto& common,
                   const LimbPieces& source, const LimbPieces& target) const {
-    constexpr double kAlikeBases = 0.9;  // cosine between where they point, seen from where each faces: 26 degrees
+    // Cosine; 0.8 to 0.97; between where they point, seen from where each faces: 26 degrees; set by hand.
+    constexpr double kAlikeBases = 0.9;
     if (from_.anatomy.pairsOf(PartKind::kLeg) < 2 || to_.anatomy.pairsOf(PartKind::kLeg) < 2 || common.size() < 2)
       return false;
     const auto wayOf = [](const Skeleton& skeleton, const Anatomy& anatomy, Index begin, Index end) {
@@ -491,7 +493,7 @@ class Matcher {
 
   // Most joints of the smaller one have the same name, and hang on joints of the same name.
   bool areFamily() const {
-    constexpr double kMostNames = 0.6;  // of the smaller one's joints
+    constexpr double kMostNames = 0.6;  // fraction of the smaller one's joints; 0.5 to 0.9; set by hand
     const auto keyOf = [](const Skeleton& skeleton, Index joint) {
       const std::optional<Index>& parent = skeleton.joints[joint].parent;
       return plainName(skeleton.joints[joint].name) + '/' + (parent ? plainName(skeleton.joints[*parent].name) : "");

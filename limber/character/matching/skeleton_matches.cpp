@@ -6,8 +6,8 @@ namespace limber {
 
 namespace {
 
-// Matches that are kept at once; the oldest go, so that a thousand bodies of as many builds need no more memory. A key
-// and a map of 100 joints take some 40 KB.
+// Matches; 16 and more; that are kept at once: bounds memory. The oldest go, so that a thousand bodies of as many
+// builds need no more memory. A key and a map of 100 joints take some 40 KB.
 constexpr std::size_t kMostKept = 256;
 
 template <typename Number>

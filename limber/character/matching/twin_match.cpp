@@ -14,13 +14,20 @@ namespace limber {
 
 namespace {
 
-constexpr double kSameLength = 0.02;  // of the bone; or of a hundredth of the skeleton's, for the shortest
-constexpr double kMostOff = 0.35;     // mean distance of joints laid on each other, in mean distances from their middle
-constexpr double kAlike = 1e-3;       // likewise: ways that differ by less are told apart by names
-// Of a limb's reach: how far its joints may be off to have been turned as a whole. A tenth of what the motion may be
-// off in the end (0.1 mm of a person); places in files, in float, are exact to a hundredth of it.
+// Fraction of a bone, or of a hundredth of the skeleton for the shortest; 1e-3 to 0.05; between twins' bones; set by
+// hand.
+constexpr double kSameLength = 0.02;
+// Mean distance of joints laid on each other, in mean distances from their middle; 0.1 to 0.5; of twins; set by hand.
+constexpr double kMostOff = 0.35;
+// The same, and of a bone; 1e-5 to 1e-2; candidates that differ by less are told apart by names; set by hand.
+constexpr double kAlike = 1e-3;
+// Fraction of a limb's reach; 1e-6 to 1e-4 (1e-3 before); by which its joints may be off to have been turned as a
+// whole. A tenth of what the motion may be off in the end (0.1 mm of a person); positions in files, in float, are exact
+// to a hundredth of it.
 constexpr double kRigid = 1e-5;
-constexpr double kOnLine = 1e-8;  // second singular value over the first: joints within 1e-4 of their way on one line
+// Second singular value over the first; 1e-10 to 1e-6; joints within 1e-4 of their length lie on one line; rounding
+// only.
+constexpr double kOnLine = 1e-8;
 
 // The rotation that brings `from` nearest to `to`, both about their origin (Kabsch 1976). What lies on one line does
 // not tell how it is twisted about that: the shortest.
