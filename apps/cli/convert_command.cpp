@@ -9,8 +9,8 @@
 #include "command.h"
 #include "fbx_arguments.h"
 #include "limber/actions/export/write_model.h"
-#include "limber/character/anatomy/body_size.h"
 #include "limber/character/anatomy/skeleton_mirror.h"
+#include "limber/character/anatomy/skeleton_size.h"
 #include "limber/core/counted.h"
 #include "limber/core/text/names.h"
 #include "limber/document/bvh/bvh_write.h"
@@ -370,7 +370,7 @@ void run(ConvertArguments options) {
   motion->clips = chosenClips(std::move(motion->clips), options.clips);
   progress->stage("edit");
   trimAndMirror(*motion, options);
-  warnUnlikelySize(*motion, motion->warnings);
+  warnUnlikelySize(motion->skeleton, motion->clips, motion->warnings);
   std::vector<ClipEditReport> reports;
   if (isMotionFormat(options.output)) {
     reports = editClips(*motion, options.clipEdits.edits);

@@ -33,7 +33,7 @@ Json weightsJson(const SkinWeightInfo& weights) {
           {"most_influences", weights.mostInfluences}};
 }
 
-Json sizeJson(const BodySize& size) {
+Json sizeJson(const SkeletonSize& size) {
   return {{"height", size.height}, {"hips", size.hips ? Json(*size.hips) : Json()}};
 }
 
@@ -167,7 +167,7 @@ void printAnatomy(const Anatomy& anatomy, const std::vector<std::string>& names)
   if (!attached.empty()) printField("", fmt::format("attachments: {}", joinNames(attached)));
 }
 
-void printSkeletonSize(const BodySize& size) {
+void printSkeletonSize(const SkeletonSize& size) {
   const std::string hips = size.hips ? fmt::format(", hips at {:.4g} m", *size.hips) : "";
   printField("skeleton", fmt::format("{:.4g} m high from the lowest joint to the highest{}", size.height, hips));
 }

@@ -110,14 +110,15 @@ std::vector<ClipInfo> inspectClips(const Asset& asset) {
 }
 
 // Clips are read only where the size of the rest pose is unlikely: reading them may fail where all else is right.
-void inspectSize(const Asset& asset, const AssetSkeleton& skeleton, Warnings& warnings) {
+void inspectSize(const Asset& asset, const AssetSkeleton& skeleton, const SkeletonReading& reading,
+                 Warnings& warnings) {
   Warnings found;
-  warnUnlikelySize(skeleton.skeleton, found);
+  warnUnlikelySize(reading, {}, found);
   if (found.empty()) return;
   try {
     const Motion motion = motionOf(asset, skeleton);
     found = {};
-    warnUnlikelySize(motion, found);
+    warnUnlikelySize(reading, motion.clips, found);
   } catch (const Error&) {  // the rest pose alone counts
   }
   warnings.append(found);
@@ -165,9 +166,10 @@ AssetInfo inspectAsset(const Asset& asset) {
     const Skeleton& skeleton = character.binding().skeleton;
     for (const Joint& joint : skeleton.joints) info.joints.push_back(joint.name);
     info.jointPositions = restPositions(skeleton);
-    info.anatomy = SkeletonReading(skeleton).anatomy();
-    info.bodySize = bodySize(skeleton, restPose(skeleton), *info.anatomy);
-    inspectSize(asset, character.binding(), info.warnings);
+    const SkeletonReading reading(skeleton);
+    info.anatomy = reading.anatomy();
+    info.bodySize = skeletonSize(skeleton, restPose(skeleton), *info.anatomy);
+    inspectSize(asset, character.binding(), reading, info.warnings);
     if (hasRig(asset)) info.weights = inspectWeights(readWeights(asset, geometry, character.binding()));
   }
   return info;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "limber/character/anatomy/anatomy.h"
-#include "limber/character/anatomy/body_size.h"
+#include "limber/character/anatomy/skeleton_size.h"
 #include "limber/core/types.h"
 #include "limber/document/asset.h"
 
@@ -44,7 +44,7 @@ struct AssetInfo {
   Index nodes = 0, meshes = 0, primitives = 0, materials = 0, textures = 0, images = 0, skins = 0;
   std::vector<std::string> joints;
   std::vector<Vec3> jointPositions;       // #joints, of the rest pose in the scene's space, metres
-  std::optional<BodySize> bodySize;       // in rest pose, metres; none without a skeleton
+  std::optional<SkeletonSize> bodySize;   // in rest pose, metres; none without a skeleton
   std::optional<Anatomy> anatomy;         // of its skeleton, in rest pose; none without one
   std::optional<SkinWeightInfo> weights;  // none without a skin
   std::vector<ClipInfo> clips;

@@ -16,7 +16,7 @@
 #include "limber/actions/rig/left_out_weights.h"
 #include "limber/actions/rig/pins_outside.h"
 #include "limber/actions/rig/stand_upright.h"
-#include "limber/character/anatomy/body_size.h"
+#include "limber/character/anatomy/skeleton_size.h"
 #include "limber/core/known_error.h"
 #include "limber/document/rig/rig_io.h"
 #include "limber/document/scene/geometry.h"
@@ -202,7 +202,7 @@ Rigged makeRig(const Asset& asset, const FigureToRig& input, const AutoRigOption
     if (!sure && rig.up && confidence > kLikelyTemplate) warnMaybeLies(*rig.up, confidence, report.warnings);
     warnPinsOutside(prepared, options.rig.pins, report.warnings);
     result.made = toWorld(std::move(rig.skeleton), frame);
-    if (confidence > kLikelyTemplate && !rig.isAbstained) warnUnlikelySize(*result.made, report.warnings);
+    if (confidence > kLikelyTemplate && !rig.isAbstained) warnUnlikelySize(*result.made, {}, report.warnings);
   }
 
   progress.stage("skin");

@@ -19,14 +19,21 @@ const Skeleton& SkeletonReading::skeleton() const {
   return readings_->skeleton;
 }
 
-bool SkeletonReading::isOf(const Skeleton& other) const {
+bool SkeletonReading::hasJointsOf(const Skeleton& other) const {
   const auto isSame = [](const Joint& a, const Joint& b) {
-    return a.name == b.name && a.declaredBone == b.declaredBone && a.parent == b.parent &&
-           a.rest.translation == b.rest.translation && a.rest.rotation.coeffs() == b.rest.rotation.coeffs() &&
-           a.rest.scale == b.rest.scale;
+    return a.name == b.name && a.declaredBone == b.declaredBone && a.parent == b.parent;
   };
   const std::vector<Joint>& own = skeleton().joints;
   return std::equal(own.begin(), own.end(), other.joints.begin(), other.joints.end(), isSame);
+}
+
+bool SkeletonReading::isOf(const Skeleton& other) const {
+  const auto restsAlike = [](const Joint& a, const Joint& b) {
+    return a.rest.translation == b.rest.translation && a.rest.rotation.coeffs() == b.rest.rotation.coeffs() &&
+           a.rest.scale == b.rest.scale;
+  };
+  const std::vector<Joint>& own = skeleton().joints;
+  return hasJointsOf(other) && std::equal(own.begin(), own.end(), other.joints.begin(), restsAlike);
 }
 
 const Anatomy& SkeletonReading::anatomy() const {

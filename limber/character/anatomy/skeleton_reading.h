@@ -14,7 +14,9 @@ class SkeletonReading {
   SkeletonReading(const Skeleton& skeleton);
 
   const Skeleton& skeleton() const;
-  // Has `other` the same joints, bit for bit in names, parents and rest pose?
+  // Has `other` joints of the same names, declared bones and parents? Then parts of the anatomy are its parts.
+  bool hasJointsOf(const Skeleton& other) const;
+  // And, bit for bit, the same rest pose? Then its axes and sizes are this one's, too.
   bool isOf(const Skeleton& other) const;
   // readAnatomy of the rest pose; throws Error as it does.
   const Anatomy& anatomy() const;

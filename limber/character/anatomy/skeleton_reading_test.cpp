@@ -29,9 +29,11 @@ TEST(SkeletonReading, KnowsItsSkeletonToTheBit) {
   Skeleton other = chain();
   other.joints[2].rest.translation.y() += 1e-15;
   EXPECT_FALSE(reading.isOf(other)) << "moved";
+  EXPECT_TRUE(reading.hasJointsOf(other)) << "moved";
   other = chain();
   other.joints[2].name = "head";
   EXPECT_FALSE(reading.isOf(other)) << "renamed";
+  EXPECT_FALSE(reading.hasJointsOf(other)) << "renamed";
   other = chain();
   other.joints[3].parent = 1;
   EXPECT_FALSE(reading.isOf(other)) << "hung elsewhere";

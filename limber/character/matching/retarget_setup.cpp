@@ -110,13 +110,14 @@ double legHeight(const std::vector<AnimalLeg>& legs, const SkeletonMap& map, Map
 }
 
 // Which way others than people face; these tell it by their limbs.
-Axes axesOf(const SkeletonReading& reading, bool person) {
-  return person ? Axes{} : reading.anatomy().axes;
+Axes axesOf(const Skeleton& skeleton, const SkeletonReading& reading, bool person) {
+  if (person) return {};
+  return reading.isOf(skeleton) ? reading.anatomy().axes : readAnatomy(skeleton).axes;
 }
 
-// The map's, where it was made for this skeleton and not for one in another space.
+// The map's, where its skeleton has these joints: mirrored axes and uneven scales may be gone (PlainSkeleton).
 SkeletonReading readingOf(const Skeleton& skeleton, const std::optional<SkeletonReading>& known) {
-  return known && known->isOf(skeleton) ? *known : SkeletonReading(skeleton);
+  return known && known->hasJointsOf(skeleton) ? *known : SkeletonReading(skeleton);
 }
 
 std::vector<Index> tailOf(const Anatomy& anatomy) {
@@ -170,10 +171,10 @@ RetargetSetup::RetargetSetup(const Skeleton& from, const Skeleton& to, SkeletonM
       quadruped(map.isQuadruped()),
       sourceRest(restOf(from, motion ? std::span(motion->poses) : std::span<const Pose>(), map)),
       targetRest(map.twins ? poseAsTwin(from, sourceRest, to, *map.twins) : restPose(to)),
-      sourceNeutral(neutralPose(from, sourceRest, map, MapSide::kSource, axesOf(sourceReading, person))),
+      sourceNeutral(neutralPose(from, sourceRest, map, MapSide::kSource, axesOf(from, sourceReading, person))),
       targetNeutral(map.twins ? neutralPoseIn((sourceNeutral.toBody * map.twins->turn.conjugate()).normalized(), to,
                                               targetRest, map, MapSide::kTarget)
-                              : neutralPose(to, targetRest, map, MapSide::kTarget, axesOf(targetReading, person))),
+                              : neutralPose(to, targetRest, map, MapSide::kTarget, axesOf(to, targetReading, person))),
       sourceKinematics(from, sourceNeutral.toBody),
       targetKinematics(to, targetNeutral.toBody) {
   if (person) {

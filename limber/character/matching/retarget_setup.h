@@ -64,7 +64,7 @@ struct RetargetSetup {
   const Skeleton* source;
   const Skeleton* target;
   SkeletonMap map;
-  SkeletonReading sourceReading, targetReading;
+  SkeletonReading sourceReading, targetReading;  // the map's, where it has them
   RetargetOptions options;
   bool person = false;  // SkeletonMap::isBiped
   // All bones are alike but for their size, and each joint of the target follows one: then every joint moves as its

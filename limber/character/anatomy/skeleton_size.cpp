@@ -1,9 +1,11 @@
-#include "limber/character/anatomy/body_size.h"
+#include "limber/character/anatomy/skeleton_size.h"
 
 #include <algorithm>
 #include <limits>
 
 #include <fmt/format.h>
+
+#include "limber/skeleton/clip/clip_player.h"
 
 namespace limber {
 
@@ -35,7 +37,7 @@ bool isPersonOrQuadruped(const Anatomy& anatomy) {
 
 }  // namespace
 
-BodySize bodySize(const Skeleton& skeleton, const Pose& pose, const Anatomy& anatomy) {
+SkeletonSize skeletonSize(const Skeleton& skeleton, const Pose& pose, const Anatomy& anatomy) {
   const std::vector<Vec3> positions = posePositions(skeleton, pose);
   const auto countsBody = [&](Index joint) { return isOfBody(anatomy, joint); };
   bool hasBody = false;
@@ -49,7 +51,7 @@ BodySize bodySize(const Skeleton& skeleton, const Pose& pose, const Anatomy& ana
     lowest = std::min(lowest, height);
     highest = std::max(highest, height);
   }
-  BodySize size;
+  SkeletonSize size;
   if (box.empty()) return size;
   size.height = highest - lowest;
   size.longestSide = box.longestSide();
@@ -58,20 +60,21 @@ BodySize bodySize(const Skeleton& skeleton, const Pose& pose, const Anatomy& ana
   return size;
 }
 
-void warnUnlikelySize(const Motion& motion, Warnings& warnings) {
-  if (motion.skeleton.joints.empty()) return;
-  const Anatomy anatomy = readAnatomy(motion.skeleton);
+void warnUnlikelySize(const SkeletonReading& reading, std::span<const Clip> clips, Warnings& warnings) {
+  const Skeleton& skeleton = reading.skeleton();
+  if (skeleton.joints.empty()) return;
+  const Anatomy& anatomy = reading.anatomy();
   if (!isPersonOrQuadruped(anatomy)) return;
   // A rest pose with all joints in one point is met in motion files, whose frames then have the lengths.
-  Pose pose = restPose(motion.skeleton);
-  const double atRest = bodySize(motion.skeleton, pose, anatomy).longestSide;
+  Pose pose = restPose(skeleton);
+  const double atRest = skeletonSize(skeleton, pose, anatomy).longestSide;
   double least = atRest, greatest = atRest;
-  const auto moved = std::find_if(motion.clips.begin(), motion.clips.end(), [](const Clip& clip) {
+  const auto moved = std::find_if(clips.begin(), clips.end(), [](const Clip& clip) {
     return !clip.translations.empty() || !clip.rotations.empty() || !clip.scales.empty();
   });
-  if (moved != motion.clips.end()) {
+  if (moved != clips.end()) {
     sampleClip(*moved, 0, pose);
-    const double atStart = bodySize(motion.skeleton, pose, anatomy).longestSide;
+    const double atStart = skeletonSize(skeleton, pose, anatomy).longestSide;
     least = std::min(least, atStart);
     greatest = std::max(greatest, atStart);
   }
@@ -80,12 +83,6 @@ void warnUnlikelySize(const Motion& motion, Warnings& warnings) {
                fmt::format("the body measures {:.3g} m, as hardly any person or quadruped does: is its unit of length "
                            "another?",
                            greatest < kSmallestBody ? greatest : least));
-}
-
-void warnUnlikelySize(const Skeleton& skeleton, Warnings& warnings) {
-  Motion still;
-  still.skeleton = skeleton;
-  warnUnlikelySize(still, warnings);
 }
 
 }  // namespace limber

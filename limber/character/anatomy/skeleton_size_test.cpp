@@ -1,9 +1,10 @@
-#include "limber/character/anatomy/body_size.h"
+#include "limber/character/anatomy/skeleton_size.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "limber/character/anatomy/testing/bodies.h"
+#include "limber/skeleton/motion.h"
 #include "warning_kinds.h"
 
 namespace limber {
@@ -20,18 +21,18 @@ Skeleton scaled(Skeleton skeleton, double factor) {
 
 std::vector<std::string> warningsOf(const Skeleton& skeleton) {
   Warnings warnings;
-  warnUnlikelySize(skeleton, warnings);
+  warnUnlikelySize(skeleton, {}, warnings);
   return warningKinds(warnings);
 }
 
-BodySize sizeOf(const Skeleton& skeleton) {
-  return bodySize(skeleton, restPose(skeleton), readAnatomy(skeleton));
+SkeletonSize sizeOf(const Skeleton& skeleton) {
+  return skeletonSize(skeleton, restPose(skeleton), readAnatomy(skeleton));
 }
 
-TEST(BodySize, MeasuresAPersonWhicheverWayItLies) {
+TEST(SkeletonSize, MeasuresAPersonWhicheverWayItLies) {
   const Skeleton person = testing::personWith(NameHabit::kVrm).skeleton;  // toes at 0.025, head at 1.52
   for (const Skeleton& body : {person, testing::turnedAsAWhole(person, testing::turn(Vec3::UnitX(), 90))}) {
-    const BodySize size = sizeOf(body);
+    const SkeletonSize size = sizeOf(body);
     EXPECT_NEAR(size.height, 1.495, 1e-6);
     EXPECT_NEAR(size.longestSide, 1.495, 1e-6);
     ASSERT_TRUE(size.hips);
@@ -39,17 +40,17 @@ TEST(BodySize, MeasuresAPersonWhicheverWayItLies) {
   }
 }
 
-TEST(BodySize, PropsDoNotCountAndSkeletonsWithoutABodyDoAsAWhole) {
+TEST(SkeletonSize, PropsDoNotCountAndSkeletonsWithoutABodyDoAsAWhole) {
   Skeleton armed = testing::personWith(NameHabit::kVrm).skeleton;
   testing::addJoint(armed, "weapon", "rightHand", Vec3(0, 3, 0));
   EXPECT_NEAR(sizeOf(armed).height, 1.495, 1e-6);
   Skeleton single;
   testing::addJoint(single, "a", "", Vec3(0, 1, 0));
   EXPECT_EQ(sizeOf(single).height, 0);
-  EXPECT_EQ(bodySize({}, {}, Anatomy()).longestSide, 0);
+  EXPECT_EQ(skeletonSize({}, {}, Anatomy()).longestSide, 0);
 }
 
-TEST(BodySize, WarnsOfPeopleAndQuadrupedsInAnotherUnit) {
+TEST(SkeletonSize, WarnsOfPeopleAndQuadrupedsInAnotherUnit) {
   for (const Skeleton& body : {testing::personWith(NameHabit::kMixamo).skeleton, testing::dog().skeleton}) {
     EXPECT_THAT(warningsOf(body), ::testing::IsEmpty());
     EXPECT_THAT(warningsOf(scaled(body, 2)), ::testing::IsEmpty());
@@ -58,12 +59,12 @@ TEST(BodySize, WarnsOfPeopleAndQuadrupedsInAnotherUnit) {
     }
   }
   Warnings warnings;
-  warnUnlikelySize(scaled(testing::personWith(NameHabit::kVrm).skeleton, 0.01), warnings);
+  warnUnlikelySize(scaled(testing::personWith(NameHabit::kVrm).skeleton, 0.01), {}, warnings);
   EXPECT_EQ(warnings.items().at(0).message,
             "the body measures 0.0149 m, as hardly any person or quadruped does: is its unit of length another?");
 }
 
-TEST(BodySize, DoesNotWarnOfOtherBodies) {
+TEST(SkeletonSize, DoesNotWarnOfOtherBodies) {
   for (const MadeBody& body : {testing::crow(), testing::snake(), testing::fish(), testing::spider()}) {
     for (const double factor : {0.01, 100.0})
       EXPECT_THAT(warningsOf(scaled(body.skeleton, factor)), ::testing::IsEmpty());
@@ -72,7 +73,7 @@ TEST(BodySize, DoesNotWarnOfOtherBodies) {
 }
 
 // Files whose rest pose is in another unit than their frames, or has no form at all, play in the right size.
-TEST(BodySize, ASizeThatTheMotionHasIsNone) {
+TEST(SkeletonSize, ASizeThatTheMotionHasIsNone) {
   const Skeleton person = testing::personWith(NameHabit::kMixamo).skeleton;
   Motion motion;
   motion.skeleton = scaled(person, 0.01);
@@ -84,10 +85,10 @@ TEST(BodySize, ASizeThatTheMotionHasIsNone) {
     track.values = {person.joints[j].rest.translation.cast<float>()};
   }
   Warnings warnings;
-  warnUnlikelySize(motion, warnings);
+  warnUnlikelySize(motion.skeleton, motion.clips, warnings);
   EXPECT_TRUE(warnings.empty());
   for (Track<Vec3f>& track : clip.translations) track.values[0] *= 0.005f;
-  warnUnlikelySize(motion, warnings);
+  warnUnlikelySize(motion.skeleton, motion.clips, warnings);
   EXPECT_THAT(warningKinds(warnings), ::testing::ElementsAre("unlikely-size"));
 }
 
