@@ -108,9 +108,9 @@ TriMesh swarm(Index vertexCount) {
     return static_cast<float>(state >> 8) / 16777216.0f;
   };
   while (mesh.vertexCount() < vertexCount) {
-    const Vec3f place(unit(), unit(), unit());
+    const Vec3f position(unit(), unit(), unit());
     const Index first = mesh.vertexCount();
-    for (const Vec3f& p : one.positions) mesh.positions.push_back(p + place);
+    for (const Vec3f& p : one.positions) mesh.positions.push_back(p + position);
     for (const Triangle& t : one.triangles) mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
   }
   return mesh;

@@ -79,11 +79,11 @@ TriMesh robot(Index vertices) {
   for (const Limb& limb : limbs()) area += limb.area();
   TriMesh mesh;
   for (const Limb& limb : limbs()) {
-    const double share = vertices * limb.area() / area;
+    const double fraction = vertices * limb.area() / area;
     const double length = (limb.b - limb.a).norm() + limb.radiusA + limb.radiusB;
     const double girth = kPi * (limb.radiusA + limb.radiusB);
-    const Index around = std::max<Index>(6, static_cast<Index>(std::lround(std::sqrt(share * girth / length))));
-    appendLimb(limb, std::max<Index>(3, static_cast<Index>(std::lround(share / around))), around, mesh);
+    const Index around = std::max<Index>(6, static_cast<Index>(std::lround(std::sqrt(fraction * girth / length))));
+    appendLimb(limb, std::max<Index>(3, static_cast<Index>(std::lround(fraction / around))), around, mesh);
   }
   return mesh;
 }

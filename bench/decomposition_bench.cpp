@@ -36,12 +36,12 @@ VertexSequence movingCreature(Index points, Index frames, Index bones) {
     }
     for (Index v = 0; v < sequence.pointCount(); ++v) {
       const Vec3 p = mesh.positions[v].cast<double>();
-      const double place = (p[axis] - box.min[axis]) / box.size()[axis] * bones - 0.5;
-      const double lower = std::min(std::max(std::floor(place), 0.0), bones - 1.0);
-      const double share = std::min(std::max(place - lower, 0.0), 1.0);
+      const double position = (p[axis] - box.min[axis]) / box.size()[axis] * bones - 0.5;
+      const double lower = std::min(std::max(std::floor(position), 0.0), bones - 1.0);
+      const double fraction = std::min(std::max(position - lower, 0.0), 1.0);
       const auto b = static_cast<Index>(lower);
-      const Vec3 place3 = (1 - share) * (moved[b] * p) + share * (moved[std::min(b + 1, bones - 1)] * p);
-      sequence.set(v, f, place3.cast<float>());
+      const Vec3 blended = (1 - fraction) * (moved[b] * p) + fraction * (moved[std::min(b + 1, bones - 1)] * p);
+      sequence.set(v, f, blended.cast<float>());
     }
   }
   return sequence;

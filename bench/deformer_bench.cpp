@@ -175,9 +175,9 @@ void directWithFewerJoints(benchmark::State& state) {
   setThreadCount(1);
   const BoundCreature creature = boundCreature(state);
   DirectDeltaMushOptions options, all;
-  options.mostJoints = static_cast<Index>(state.range(1));
-  options.leastEntry = 1e-3 * static_cast<double>(state.range(2));
-  all.leastWeight = 1.0 / 256;
+  options.maxJoints = static_cast<Index>(state.range(1));
+  options.minEntry = 1e-3 * static_cast<double>(state.range(2));
+  all.minWeight = 1.0 / 256;
   const BoundSurface surface = {creature.mesh.positions, creature.mesh.triangles, creature.weights};
   const auto rows = directDeltaMushRows(surface, creature.jointCount(), options);
   const auto full = fullDirectDeltaMushRows(surface, creature.jointCount(), all);

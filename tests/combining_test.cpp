@@ -35,19 +35,19 @@ MixFigures figuresOf(const MixBody& body, const Clip& clip, double rate) {
   std::vector<BodyFrame> globals(frames.poses.size());
   for (std::size_t f = 0; f < globals.size(); ++f) body.globals(frames.poses[f], globals[f]);
   const auto begin = static_cast<std::size_t>(kLeadIn * rate);
-  double way = 0, resting = 0, jerk = 0, steps = 0;
+  double pathLength = 0, resting = 0, jerk = 0, steps = 0;
   for (const Leg& leg : body.legs()) {
     for (const Index point : {leg.end, leg.toes.value_or(leg.end)}) {
       std::vector<Vec3> path;
       std::vector<double> above;
       for (const BodyFrame& frame : globals) path.push_back(frame.positions[point] / height);
       const auto lowest = std::min_element(path.begin(), path.end(), [](auto& a, auto& b) { return a.y() < b.y(); });
-      for (const Vec3& place : path) above.push_back(place.y() - lowest->y());
+      for (const Vec3& position : path) above.push_back(position.y() - lowest->y());
       const std::vector<bool> rests =
           restingFrames(path, above, std::vector<bool>(path.size(), false), frames.frameSeconds);
       for (std::size_t f = begin + 1; f < path.size(); ++f) {
         if (!rests[f] || !rests[f - 1]) continue;
-        way += std::hypot(path[f].x() - path[f - 1].x(), path[f].z() - path[f - 1].z());
+        pathLength += std::hypot(path[f].x() - path[f - 1].x(), path[f].z() - path[f - 1].z());
         resting += frames.frameSeconds;
       }
     }
@@ -58,7 +58,7 @@ MixFigures figuresOf(const MixBody& body, const Clip& clip, double rate) {
       jerk += (at(0) - at(3) - 3 * (at(1) - at(2))).squaredNorm();
     }
   }
-  return {resting > 0 ? way / resting : 0, std::sqrt(jerk / steps) * rate * rate * rate / height};
+  return {resting > 0 ? pathLength / resting : 0, std::sqrt(jerk / steps) * rate * rate * rate / height};
 }
 
 ClipWithContacts onto(Asset& character, const std::filesystem::path& motion) {

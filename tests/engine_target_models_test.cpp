@@ -20,7 +20,7 @@ namespace limber::testing {
 namespace {
 
 constexpr std::size_t kVertexStep = 11, kMomentsOfClip = 3;
-constexpr double kUnseen = 1e-6, kSamePlace = 1e-4;  // of the size
+constexpr double kUnseen = 1e-6, kSamePosition = 1e-4;  // of the size
 
 std::map<std::string_view, Vec3> bonesOfPerson(const Skeleton& skeleton) {
   const std::vector<Affine> globals = restGlobals(skeleton);
@@ -45,7 +45,7 @@ std::set<std::string_view> followedInPlace(const Skeleton& source, const Skeleto
     const auto found = partner.find(bone.joint);
     if (found == partner.end()) continue;
     const Vec3 apart = from[bone.joint].translation() - to[found->second].translation();
-    if (apart.norm() < kSamePlace * box.diagonal()) followed.insert(bone.bone);
+    if (apart.norm() < kSamePosition * box.diagonal()) followed.insert(bone.bone);
   }
   return followed;
 }
@@ -70,9 +70,9 @@ TEST_P(TargetPeople, LookAndAreReadAsBefore) {
     const bool losesNeck = target.name == "rigify" && bones.count("neck") > found.count("neck");
     if (losesNeck) continue;
     EXPECT_EQ(found.size(), bones.size()) << target.name;
-    for (const auto& [bone, place] : bones) {
+    for (const auto& [bone, position] : bones) {
       ASSERT_EQ(found.count(bone), 1u) << target.name << ' ' << bone;
-      EXPECT_LT((found.at(bone) - place).norm(), kSamePlace * place.norm()) << target.name << ' ' << bone;
+      EXPECT_LT((found.at(bone) - position).norm(), kSamePosition * position.norm()) << target.name << ' ' << bone;
     }
     EXPECT_EQ(followedInPlace(source, skeleton), followedInPlace(source, source)) << target.name;
   }

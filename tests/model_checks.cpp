@@ -215,11 +215,12 @@ void expectJointCount(const AssetSkeleton& rig, Index handles) {
 bool expectSymmetricWhereMeshIs(const Geometry& geometry, const Skeleton& skeleton) {
   const PreparedMesh prepared = prepareGeometry(geometry, geometry.triangles);
   if (!isMirrorSymmetric(prepared.mesh)) return false;
-  std::vector<Vec3> places;
-  for (const Affine& global : restGlobals(skeleton)) places.push_back(prepared.frame.toWorking(global.translation()));
-  const PointGrid grid(places, 10 * kNear);
+  std::vector<Vec3> positions;
+  for (const Affine& global : restGlobals(skeleton))
+    positions.push_back(prepared.frame.toWorking(global.translation()));
+  const PointGrid grid(positions, 10 * kNear);
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
-    const auto partner = grid.find(mirrored(places[j]));
+    const auto partner = grid.find(mirrored(positions[j]));
     EXPECT_TRUE(partner) << skeleton.joints[j].name << " has no mirror image";
     if (!partner) continue;
     const double tolerance = 10 * kNear * prepared.frame.scale;

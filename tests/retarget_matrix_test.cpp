@@ -23,7 +23,7 @@ namespace {
 
 // Whole motions, or as many frames as LIMBER_MATRIX_FRAMES says: enough to find faulty memory, too few for the bounds,
 // which are those of whole motions.
-std::size_t mostFrames() {
+std::size_t maxFrames() {
   const char* named = std::getenv("LIMBER_MATRIX_FRAMES");
   return named ? std::strtoul(named, nullptr, 10) : std::numeric_limits<std::size_t>::max();
 }
@@ -92,7 +92,7 @@ TEST_P(RetargetMatrix, EveryHumanoidKeepsFeetAndGround) {
   Spreads spreads;
   for (const char* motion : kMotions) {
     Taken source = motionFrom(motion);
-    source.frames.poses.resize(std::min(source.frames.poses.size(), mostFrames()));
+    source.frames.poses.resize(std::min(source.frames.poses.size(), maxFrames()));
     for (const std::string& file : humanoids()) {
       const Skeleton target = readMotion(*sharedDataFolder() / "rigged" / file).skeleton;
       const RetargetSetup setup(source.skeleton, target, matchSkeletons(source.skeleton, target), {}, &source.frames);
@@ -205,7 +205,7 @@ TEST(RetargetMatching, WhatIsSureByFormAloneIsRight) {
 TEST(RetargetKnownAnswers, NoMethodIsWorseThanCopying) {
   if (!sharedDataFolder()) GTEST_SKIP() << kNoSharedData;
   Taken one = motionFrom("cmu_mb_12_01_walk.bvh"), other = motionFrom("cmu_daz_12_01_walk.bvh");
-  for (int way = 0; way < 2; ++way, std::swap(one, other)) {
+  for (int step = 0; step < 2; ++step, std::swap(one, other)) {
     const RetargetSetup setup(one.skeleton, other.skeleton, matchSkeletons(one.skeleton, other.skeleton), {},
                               &one.frames);
     const auto error = [&](const RetargetMethod& method) {

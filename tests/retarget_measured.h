@@ -31,14 +31,14 @@ class Spread {
  public:
   void add(double value, std::string pair) { values_.emplace_back(value, std::move(pair)); }
   // At least that share of the pairs is below.
-  void expectBelow(double bound, double share, const char* what) {
+  void expectBelow(double bound, double fraction, const char* what) {
     ASSERT_FALSE(values_.empty()) << what;
     std::sort(values_.begin(), values_.end());
     const auto above = std::find_if(values_.begin(), values_.end(), [&](const auto& v) { return !(v.first < bound); });
     const double below = static_cast<double>(above - values_.begin()) / static_cast<double>(values_.size());
-    EXPECT_GE(below, share) << what << " is not below " << bound << " for " << values_.end() - above << " of "
-                            << values_.size() << " pairs; at worst " << values_.back().first << ": "
-                            << values_.back().second;
+    EXPECT_GE(below, fraction) << what << " is not below " << bound << " for " << values_.end() - above << " of "
+                               << values_.size() << " pairs; at worst " << values_.back().first << ": "
+                               << values_.back().second;
   }
   void expectAllBelow(double bound, const char* what) { expectBelow(bound, 1, what); }
 

@@ -63,9 +63,9 @@ TEST_P(ExampleScenes, StandsInThePoseThatIsKeptBesideIt) {
       poseFromJson(textOf(exampleFolder() / "poses" / (std::string(GetParam().name) + ".pose.json")));
   const std::optional<Pose> pose = poseByNames(kept, skeleton);
   ASSERT_TRUE(pose);
-  const std::vector<Affine> expected = poseGlobals(skeleton, *pose), stands = poseGlobals(skeleton, state().pose);
-  for (std::size_t j = 0; j < stands.size(); ++j) {
-    EXPECT_LT((stands[j].matrix() - expected[j].matrix()).norm(), 1e-5) << skeleton.joints[j].name;
+  const std::vector<Affine> expected = poseGlobals(skeleton, *pose), globals = poseGlobals(skeleton, state().pose);
+  for (std::size_t j = 0; j < globals.size(); ++j) {
+    EXPECT_LT((globals[j].matrix() - expected[j].matrix()).norm(), 1e-5) << skeleton.joints[j].name;
   }
 }
 

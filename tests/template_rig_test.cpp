@@ -198,21 +198,21 @@ TEST_P(TemplatePeople, HaveHandsAndFeetInTheRightLimbs) {
   const Skeleton skeleton =
       readSkeleton(readAsset(rigged(asset, templateOptions("humanoid")).glb, "result.glb")).skeleton;
   const std::vector<Affine> globals = restGlobals(skeleton);
-  const auto place = [&](const std::string& name) {
+  const auto positionOf = [&](const std::string& name) {
     return Vec3((globals[skeleton.find(name).value()].translation() - box.center()) / box.size().y());
   };
   const double reach = 0.5 * box.size().x() / box.size().y();
   for (const auto& [side, sign] : {std::pair(std::string("left"), 1.0), std::pair(std::string("right"), -1.0)}) {
     // The wrist: a hand's length before the tips of the fingers.
-    EXPECT_GT(sign * place(side + "Hand").x(), 0.75 * reach) << side;
-    EXPECT_LT(sign * place(side + "Hand").x(), 0.9 * reach) << side;
-    EXPECT_GT(sign * place(side + "Hand").x(), sign * place(side + "LowerArm").x()) << side;
-    EXPECT_GT(sign * place(side + "Foot").x(), 0.02) << side;
-    EXPECT_LT(place(side + "Foot").y(), -0.4) << side;
-    EXPECT_GT(place(side + "Toes").z(), place(side + "Foot").z()) << side;
-    EXPECT_GT(place(side + "LowerLeg").y(), place(side + "Foot").y() + 0.12) << side;
+    EXPECT_GT(sign * positionOf(side + "Hand").x(), 0.75 * reach) << side;
+    EXPECT_LT(sign * positionOf(side + "Hand").x(), 0.9 * reach) << side;
+    EXPECT_GT(sign * positionOf(side + "Hand").x(), sign * positionOf(side + "LowerArm").x()) << side;
+    EXPECT_GT(sign * positionOf(side + "Foot").x(), 0.02) << side;
+    EXPECT_LT(positionOf(side + "Foot").y(), -0.4) << side;
+    EXPECT_GT(positionOf(side + "Toes").z(), positionOf(side + "Foot").z()) << side;
+    EXPECT_GT(positionOf(side + "LowerLeg").y(), positionOf(side + "Foot").y() + 0.12) << side;
   }
-  EXPECT_GT(place("head").y(), 0.25);
+  EXPECT_GT(positionOf("head").y(), 0.25);
 }
 
 INSTANTIATE_TEST_SUITE_P(Meshes, TemplatePeople,
@@ -233,20 +233,20 @@ TEST_P(TemplateBirds, HaveWingsHeadAndFeetInTheRightPlaces) {
   for (const Vec3f& p : collectGeometry(asset).positions) box.add(p.cast<double>());
   const Skeleton skeleton = readSkeleton(readAsset(rigged(asset, templateOptions("bird")).glb, "result.glb")).skeleton;
   const std::vector<Affine> globals = restGlobals(skeleton);
-  const auto place = [&](const std::string& name) {
+  const auto positionOf = [&](const std::string& name) {
     return Vec3((globals[skeleton.find(name).value()].translation() - box.min).cwiseQuotient(box.size()));
   };
-  EXPECT_GT(place("leftWingHand").x(), 0.65);
-  EXPECT_LT(place("rightWingHand").x(), 0.35);
+  EXPECT_GT(positionOf("leftWingHand").x(), 0.65);
+  EXPECT_LT(positionOf("rightWingHand").x(), 0.35);
   for (const char* side : {"left", "right"}) {
-    EXPECT_LT(place(std::string(side) + "Foot").y(), 0.3) << side;
-    EXPECT_NEAR(place(std::string(side) + "Foot").x(), 0.5, 0.1) << side;
+    EXPECT_LT(positionOf(std::string(side) + "Foot").y(), 0.3) << side;
+    EXPECT_NEAR(positionOf(std::string(side) + "Foot").x(), 0.5, 0.1) << side;
   }
   double last = 0;
   for (const char* name : {"tail", "hips", "chest", "neck", "head"}) {
-    EXPECT_GT(place(name).z(), last) << name;
-    EXPECT_NEAR(place(name).x(), 0.5, 0.02) << name;
-    last = place(name).z();
+    EXPECT_GT(positionOf(name).z(), last) << name;
+    EXPECT_NEAR(positionOf(name).x(), 0.5, 0.02) << name;
+    last = positionOf(name).z();
   }
   EXPECT_GT(last, 0.65) << "the head is in front";
 }
@@ -318,8 +318,8 @@ TEST_P(TemplateStatues, GetTheRightLimbsWithoutPins) {
   const Skeleton skeleton = readSkeleton(readAsset(result.glb, "result.glb")).skeleton;
   const std::vector<Affine> globals = restGlobals(skeleton);
   for (const JointPin& joint : GetParam().expected) {
-    const Vec3 place = globals[skeleton.find(joint.joint).value()].translation();
-    EXPECT_LT((place - joint.place).norm(), 0.12) << joint.joint;
+    const Vec3 position = globals[skeleton.find(joint.joint).value()].translation();
+    EXPECT_LT((position - joint.position).norm(), 0.12) << joint.joint;
   }
 }
 
@@ -377,7 +377,7 @@ TEST_P(TemplatePins, BendTheTemplateToAStatue) {
   const Skeleton skeleton = readSkeleton(readAsset(result.glb, "result.glb")).skeleton;
   const std::vector<Affine> globals = restGlobals(skeleton);
   const auto off = [&](const JointPin& pin) {
-    return (globals[skeleton.find(pin.joint).value()].translation() - pin.place).norm();
+    return (globals[skeleton.find(pin.joint).value()].translation() - pin.position).norm();
   };
   for (const JointPin& pin : GetParam().pins) EXPECT_LT(off(pin), 1e-5) << pin.joint;
   for (const JointPin& pin : GetParam().expected) EXPECT_LT(off(pin), 0.1) << pin.joint;
@@ -441,10 +441,12 @@ TEST(TemplateSamples, ABipedIsAPerson) {
   expectSoundWeights(readWeights(after, geometry, rig), static_cast<Index>(geometry.positions.size()),
                      rig.skeleton.jointCount(), 4);
   const std::vector<Affine> globals = restGlobals(rig.skeleton);
-  const auto place = [&](const char* name) { return Vec3(globals[rig.skeleton.find(name).value()].translation()); };
-  EXPECT_GT(place("leftHand").x(), 0);
-  EXPECT_LT(place("rightFoot").x(), 0);
-  EXPECT_GT(place("head").y(), place("hips").y());
+  const auto positionOf = [&](const char* name) {
+    return Vec3(globals[rig.skeleton.find(name).value()].translation());
+  };
+  EXPECT_GT(positionOf("leftHand").x(), 0);
+  EXPECT_LT(positionOf("rightFoot").x(), 0);
+  EXPECT_GT(positionOf("head").y(), positionOf("hips").y());
   writeFile(testOutputFolder() / "template_biped.glb", result.glb);
 }
 
@@ -514,12 +516,12 @@ TEST_P(TemplateFlaws, LeaveTheJointsWhereTheyWere) {
   }
   const Skeleton expected = readSkeleton(readAsset(clean.glb, "clean.glb")).skeleton;
   const Skeleton skeleton = readSkeleton(readAsset(spoiled.glb, "spoiled.glb")).skeleton;
-  const std::vector<Affine> places = restGlobals(expected), globals = restGlobals(skeleton);
+  const std::vector<Affine> transforms = restGlobals(expected), globals = restGlobals(skeleton);
   EXPECT_EQ(skeleton.jointCount(), expected.jointCount());
   for (Index j = 0; j < expected.jointCount(); ++j) {
     const std::optional<Index> joint = skeleton.find(expected.joints[j].name);
     ASSERT_TRUE(joint) << expected.joints[j].name;
-    EXPECT_LT((globals[*joint].translation() - places[j].translation()).norm(), 0.02 * height)
+    EXPECT_LT((globals[*joint].translation() - transforms[j].translation()).norm(), 0.02 * height)
         << expected.joints[j].name;
   }
 }

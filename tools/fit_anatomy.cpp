@@ -79,9 +79,9 @@ Example exampleOf(const LabelledSkeleton& body, bool names, bool withTables) {
   example.reading = std::make_unique<BodyReading>(*example.skeleton, restPose(*example.skeleton), names, false);
   const BodyReading& reading = *example.reading;
   double most = -4;
-  for (std::size_t g = 0; g < reading.guesses.size(); ++g) {
-    const Axes& guess = reading.guesses[g];
-    const double like = guess.up.dot(body.axes.up) + guess.front.dot(body.axes.front);
+  for (std::size_t g = 0; g < reading.hypotheses.size(); ++g) {
+    const Axes& hypothesis = reading.hypotheses[g];
+    const double like = hypothesis.up.dot(body.axes.up) + hypothesis.front.dot(body.axes.front);
     if (like > most) {
       most = like;
       example.right = g;
@@ -90,8 +90,8 @@ Example exampleOf(const LabelledSkeleton& body, bool names, bool withTables) {
   for (const HalfJoint& half : reading.body.joints) example.truth.push_back(body.labels[half.joint].state);
   example.allowed.assign(reading.body.joints.size(), (1u << kPartStates) - 1);
   if (withTables) {
-    for (const Axes& guess : reading.guesses)
-      example.tables.push_back(joined(reading.measures.steadyFeatures(), reading.measures.features(guess)));
+    for (const Axes& hypothesis : reading.hypotheses)
+      example.tables.push_back(joined(reading.measures.steadyFeatures(), reading.measures.features(hypothesis)));
   }
   return example;
 }
@@ -106,9 +106,9 @@ void addGradient(const Example& example, const PartWeights& weights, Gradient& g
   const BodyReading& reading = *example.reading;
   std::vector<std::unique_ptr<PartField>> fields;
   std::vector<double> scores;
-  for (std::size_t g = 0; g < reading.guesses.size(); ++g) {
+  for (std::size_t g = 0; g < reading.hypotheses.size(); ++g) {
     fields.push_back(std::make_unique<PartField>(fieldOf(reading.body, example.tables[g], weights, example.allowed)));
-    scores.push_back(axesScore(reading.measures, reading.guesses[g], *fields[g], weights));
+    scores.push_back(axesScore(reading.measures, reading.hypotheses[g], *fields[g], weights));
   }
   const double most = *std::max_element(scores.begin(), scores.end());
   double sum = 0;
@@ -129,10 +129,10 @@ void addGradient(const Example& example, const PartWeights& weights, Gradient& g
   }
   for (std::size_t g = 0; g < scores.size(); ++g) {
     const bool isRight = g == example.right;
-    const double share = std::exp(scores[g] - whole) - (isRight ? 1 : 0);
-    for (const ActiveFeature& f : reading.measures.axesFeatures(reading.guesses[g]))
-      gradient.axes[f.number] -= example.weight * share * static_cast<double>(f.value);
-    const double part = example.weight * (kAxesByLabels * share + (isRight ? 1 : 0));
+    const double fraction = std::exp(scores[g] - whole) - (isRight ? 1 : 0);
+    for (const ActiveFeature& f : reading.measures.axesFeatures(reading.hypotheses[g]))
+      gradient.axes[f.number] -= example.weight * fraction * static_cast<double>(f.value);
+    const double part = example.weight * (kAxesByLabels * fraction + (isRight ? 1 : 0));
     if (std::abs(part) < 1e-5) continue;
     const BodyMeasures::Table& table = example.tables[g];
     const std::vector<PartField::Scores> marginals = fields[g]->marginals();
@@ -221,11 +221,12 @@ PartWeights fit(const std::vector<Example>& examples, const Settings& settings) 
         }
       });
       Gradient& sum = parts[0];
-      const double share = 1.0 / static_cast<double>(end - begin);
+      const double fraction = 1.0 / static_cast<double>(end - begin);
       for (std::size_t k = 0; k < sum.feature.size(); ++k)
-        sum.feature[k] = share * (sum.feature[k] + parts[1].feature[k]);
-      for (std::size_t k = 0; k < sum.follow.size(); ++k) sum.follow[k] = share * (sum.follow[k] + parts[1].follow[k]);
-      for (std::size_t k = 0; k < sum.axes.size(); ++k) sum.axes[k] = share * (sum.axes[k] + parts[1].axes[k]);
+        sum.feature[k] = fraction * (sum.feature[k] + parts[1].feature[k]);
+      for (std::size_t k = 0; k < sum.follow.size(); ++k)
+        sum.follow[k] = fraction * (sum.follow[k] + parts[1].follow[k]);
+      for (std::size_t k = 0; k < sum.axes.size(); ++k) sum.axes[k] = fraction * (sum.axes[k] + parts[1].axes[k]);
       loss += sum.loss + parts[1].loss;
       features.step(weights.feature, sum.feature, rate, settings.prior, false);
       follows.step(weights.follow, sum.follow, rate, settings.prior, true);
@@ -335,7 +336,7 @@ void judge(const LabelledSkeleton& body, bool names, const PartWeights& weights,
   std::vector<PartState> states;
   for (std::size_t g = 0; g < example.tables.size(); ++g) {
     const PartField field = fieldOf(example.reading->body, example.tables[g], weights, example.allowed);
-    const double s = axesScore(example.reading->measures, example.reading->guesses[g], field, weights);
+    const double s = axesScore(example.reading->measures, example.reading->hypotheses[g], field, weights);
     if (s <= most) continue;
     most = s;
     best = g;
@@ -354,7 +355,7 @@ void judge(const LabelledSkeleton& body, bool names, const PartWeights& weights,
     }
   }
   if (tell && (!wrong.empty() || best != example.right)) {
-    const Axes& a = example.reading->guesses[best];
+    const Axes& a = example.reading->hypotheses[best];
     fmt::print("  {} {}{}{}\n", body.file, names ? "named" : "unnamed",
                best == example.right ? ""
                                      : fmt::format(" AXES up {:.0f} {:.0f} {:.0f} front {:.0f} {:.0f} {:.0f}", a.up.x(),

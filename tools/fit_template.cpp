@@ -30,8 +30,8 @@ using namespace limber;
 namespace {
 
 constexpr int kRounds = 3;
-constexpr double kLeastGain = 1e-4;  // percent
-constexpr double kMostError = 15;    // percent that one joint counts at most: a limb not found is not the proportions'
+constexpr double kMinGain = 1e-4;  // percent
+constexpr double kMaxError = 15;   // percent that one joint counts at most: a limb not found is not the proportions'
 
 struct Parameter {
   const char* name;
@@ -44,7 +44,7 @@ constexpr std::array<Parameter, 11> kParameters = {{
     {"neckAboveShoulders", &HumanoidProportions::neckAboveShoulders, 0.01},
     {"headAboveNeck", &HumanoidProportions::headAboveNeck, 0.01},
     {"ankle", &HumanoidProportions::ankle, 0.01},
-    {"ankleShare", &HumanoidProportions::ankleShare, 0.02},
+    {"ankleShare", &HumanoidProportions::ankleFraction, 0.02},
     {"knee", &HumanoidProportions::knee, 0.02},
     {"elbow", &HumanoidProportions::elbow, 0.02},
     {"kneeForward", &HumanoidProportions::kneeForward, 0.1},
@@ -74,19 +74,20 @@ Character readCharacter(const std::filesystem::path& file) {
   for (const HumanoidJoint& named : humanoidJoints(skeleton)) {
     const std::optional<Index> joint = character.fit.skeleton.find(named.bone);
     if (!joint || named.bone == "upperChest" || named.bone.find("Shoulder") != std::string_view::npos) continue;
-    const Vec3 place = prepared.frame.toWorking(globals[named.joint].translation());
-    character.truth.emplace_back(*joint, character.fit.frame.toBody(place));
+    const Vec3 position = prepared.frame.toWorking(globals[named.joint].translation());
+    character.truth.emplace_back(*joint, character.fit.frame.toBody(position));
   }
   return character;
 }
 
 double errorOf(const Character& character, const HumanoidProportions& proportions) {
   const TemplateFit& fit = character.fit;
-  std::vector<Vec3> places = fit.embedding.places;
-  refineHumanoid(fit.skeleton, character.body, fit.frame, fit.pins, places, proportions);
-  placeBetween(fit.skeleton, places);
+  std::vector<Vec3> positions = fit.embedding.positions;
+  refineHumanoid(fit.skeleton, character.body, fit.frame, fit.pins, positions, proportions);
+  placeBetween(fit.skeleton, positions);
   double sum = 0;
-  for (const auto& [joint, place] : character.truth) sum += std::min(kMostError, 100 * (places[joint] - place).norm());
+  for (const auto& [joint, position] : character.truth)
+    sum += std::min(kMaxError, 100 * (positions[joint] - position).norm());
   return sum / static_cast<double>(std::max<std::size_t>(1, character.truth.size()));
 }
 
@@ -109,7 +110,7 @@ HumanoidProportions fitted(const std::vector<const Character*>& characters) {
         HumanoidProportions other = best;
         other.*parameter.value += sign * parameter.step / (1 << round);
         const double error = meanError(characters, other);
-        if (error > least - kLeastGain) continue;
+        if (error > least - kMinGain) continue;
         least = error;
         best = other;
         break;
@@ -147,7 +148,7 @@ int main(int argc, char** argv) {
     fmt::print("  {:<20}{:.4f} -> {:.4f}\n", parameter.name, HumanoidProportions().*parameter.value,
                best.*parameter.value);
   }
-  double held = 0;
+  double heldOutError = 0;
   for (const std::string& maker : makers) {
     std::vector<const Character*> others, own;
     for (const Character* character : all) (character->maker == maker ? own : others).push_back(character);
@@ -155,7 +156,7 @@ int main(int argc, char** argv) {
     const double error = meanError(own, fitted(others));
     fmt::print("  without {:<12}{:.3f} as it is, {:.3f} by the others' fit ({} files)\n", maker, meanError(own, {}),
                error, own.size());
-    held += error * static_cast<double>(own.size()) / static_cast<double>(all.size());
+    heldOutError += error * static_cast<double>(own.size()) / static_cast<double>(all.size());
   }
-  fmt::print("left out by maker: {:.3f}\n", held);
+  fmt::print("left out by maker: {:.3f}\n", heldOutError);
 }

@@ -67,7 +67,7 @@ CLI::Option* addAnimationRigOptions(CLI::App& command, AnimationRigArguments& ar
       .add_option("--bones", arguments.bones,
                   "with --from-animation: bones wanted (default: enough for an error of 0.2 % of the diagonal)")
       ->needs(from)
-      ->check(CLI::Range(Index{1}, kMostBones).description(""))
+      ->check(CLI::Range(Index{1}, kMaxBones).description(""))
       ->type_name("N");
   command
       .add_option("--fps", arguments.fps,

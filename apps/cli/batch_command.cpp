@@ -32,7 +32,7 @@ namespace {
 constexpr std::string_view kBatchCommands[] = {"rig",  "animate",  "retarget", "convert", "preview",
                                                "pose", "transfer", "evaluate", "info"};
 constexpr double kMegabyte = 1 << 20;
-constexpr std::size_t kMostTried = 100;  // lists of options, for one with which a command makes sense
+constexpr std::size_t kMaxTrials = 100;  // lists of options, for one with which a command makes sense
 constexpr int kWrongCode = 2, kStoppedCode = kStorageCode;  // exit codes: a wrong call; the batch could not go on
 
 struct BatchArguments {
@@ -87,7 +87,7 @@ CallOutline outlineOf(const BatchPlan& plan) {
   CallOutline outline = outlineCall(plan.command, call);
   std::set<std::vector<std::string>> tried;
   for (auto entry = plan.entries.begin();
-       !outline.problem.empty() && entry != plan.entries.end() && tried.size() < kMostTried; ++entry) {
+       !outline.problem.empty() && entry != plan.entries.end() && tried.size() < kMaxTrials; ++entry) {
     if (entry->options.empty() || !tried.insert(entry->options).second) continue;
     std::vector<std::string> words = plan.command;
     words.insert(words.end(), entry->options.begin(), entry->options.end());
@@ -156,9 +156,10 @@ void runPlan(const BatchArguments& arguments) {
   };
   TerminalProgress cancel(true);
   BatchLine line(arguments.quiet);
-  options.waiting = [&, isTold = arguments.quiet]() mutable {
+  options.waiting = [&, isReported = arguments.quiet]() mutable {
     cancel->update(0);
-    if (!std::exchange(isTold, true)) fmt::print(stderr, "another program is at this shard: its end is waited for\n");
+    if (!std::exchange(isReported, true))
+      fmt::print(stderr, "another program is at this shard: its end is waited for\n");
   };
   options.tell = [&](const BatchProgress& at) {
     cancel->update(0);

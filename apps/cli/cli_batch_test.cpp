@@ -121,7 +121,7 @@ struct PlanWords {
   std::string words;
   bool isOfEntry;
 };
-std::vector<PlanWords> inBothPlaces(const std::vector<std::string>& each) {
+std::vector<PlanWords> inBothPositions(const std::vector<std::string>& each) {
   std::vector<PlanWords> all;
   for (const std::string& words : each) {
     all.push_back({words, false});
@@ -142,8 +142,8 @@ TEST_F(Cli, APlanOfABatchRunsNoProgram) {
       R"({"limber_adapter": 1, "kind": "rig", "steps": [{"command": ["/bin/sh", "-c", "touch ran", "{input}"], "folder": "."}]})");
   int folders = 0;
   for (const PlanWords& words :
-       inBothPlaces({R"("--rigger", "a", "--adapter", "a.json")", R"("--rigger", "a", "--adapter=a.json")",
-                     R"("--rigger", "a", "--adapter-folder", ".")", R"("--rigger", "a", "--adapter-folder=.")"})) {
+       inBothPositions({R"("--rigger", "a", "--adapter", "a.json")", R"("--rigger", "a", "--adapter=a.json")",
+                        R"("--rigger", "a", "--adapter-folder", ".")", R"("--rigger", "a", "--adapter-folder=.")"})) {
     put("plan.json", rigPlan(words));
     const std::string out = "out" + std::to_string(folders++);
     EXPECT_EQ(run({"batch", "plan.json", "-o", out, "-q"}).code, words.isOfEntry ? 1 : 2) << words.words;
@@ -159,7 +159,7 @@ TEST_F(Cli, APlanOfABatchWritesNothingButOutputs) {
   makeRobot();
   put("kept", "mine");
   int folders = 0;
-  for (const PlanWords& words : inBothPlaces({R"("--json", "kept")", R"("--json=kept")", R"("-o", "kept")"})) {
+  for (const PlanWords& words : inBothPositions({R"("--json", "kept")", R"("--json=kept")", R"("-o", "kept")"})) {
     put("plan.json", rigPlan(words));
     const std::string out = "out" + std::to_string(folders++);
     EXPECT_EQ(run({"batch", "plan.json", "-o", out, "-q"}).code, words.isOfEntry ? 1 : 2) << words.words;
@@ -177,10 +177,10 @@ TEST_F(Cli, APlanOfABatchWritesNothingButOutputs) {
 TEST_F(Cli, ABatchBelowItsInputsHasTheSameEntriesAgain) {
   makeRobot();
   put("plan.json", batchPlan(R"(".")"));
-  for (const char* told : {"1 entry: 1 run", "1 entry: 0 run"}) {
+  for (const char* message : {"1 entry: 1 run", "1 entry: 0 run"}) {
     const Result result = run({"batch", "plan.json", "-o", "out"});
     EXPECT_EQ(result.code, 0) << result.error;
-    EXPECT_THAT(result.out, HasSubstr(told));
+    EXPECT_THAT(result.out, HasSubstr(message));
   }
 }
 

@@ -72,18 +72,18 @@ std::string collada() {
 }
 
 std::string smplArrays() {
-  std::vector<double> poses, way;
+  std::vector<double> poses, distances;
   for (int frame = 0; frame < 10; ++frame) {
     std::vector<double> row(66, 0.0);
     row[3 * 16 + 2] = 0.1 * frame;
     row[3 * 4 + 0] = 0.05 * frame;
     poses.insert(poses.end(), row.begin(), row.end());
-    way.insert(way.end(), {0, 0, 0.02 * frame});
+    distances.insert(distances.end(), {0, 0, 0.02 * frame});
   }
   std::vector<std::pair<std::string, std::string>> files;
   for (const auto& [name, bytes] :
        std::vector<std::pair<std::string, Bytes>>{{"poses.npy", testing::npyDoubles({10, 66}, poses)},
-                                                  {"trans.npy", testing::npyDoubles({10, 3}, way)},
+                                                  {"trans.npy", testing::npyDoubles({10, 3}, distances)},
                                                   {"mocap_framerate.npy", testing::npyDoubles({1}, {20})}}) {
     files.emplace_back(name, std::string(bytes.begin(), bytes.end()));
   }
@@ -111,13 +111,13 @@ std::string boneName(const std::string& joint) {
 }
 
 std::map<std::string, Vec3> jointsAt(const Motion& motion, double seconds) {
-  std::map<std::string, Vec3> places;
+  std::map<std::string, Vec3> points;
   Pose pose = restPose(motion.skeleton);
   sampleClip(motion.clips.at(0), seconds, pose);
   const std::vector<Vec3> positions = posePositions(motion.skeleton, pose);
   for (Index j = 0; j < motion.skeleton.jointCount(); ++j)
-    places[boneName(motion.skeleton.joints[j].name)] = positions[j];
-  return places;
+    points[boneName(motion.skeleton.joints[j].name)] = positions[j];
+  return points;
 }
 
 // How far `b` is from `a` at the worst of the moments, as a part of the size; HUGE_VAL where fewer than `least` joints
@@ -129,12 +129,12 @@ double jointsMoved(const Motion& a, const Motion& b, std::size_t least) {
     const double seconds = a.clips.at(0).duration() * moment / (kMoments - 1);
     const std::map<std::string, Vec3> before = jointsAt(a, seconds), after = jointsAt(b, seconds);
     std::size_t common = 0;
-    for (const auto& [name, place] : before) {
-      box.add(place);
+    for (const auto& [name, position] : before) {
+      box.add(position);
       const auto found = after.find(name);
       if (found == after.end()) continue;
       ++common;
-      moved = std::max(moved, (found->second - place).norm());
+      moved = std::max(moved, (found->second - position).norm());
     }
     if (common < least) return HUGE_VAL;
   }

@@ -11,13 +11,13 @@ namespace limber::cli {
 
 namespace {
 
-constexpr double kMostSteps = 101;
+constexpr double kMaxSteps = 101;
 
 [[noreturn]] void refuseBlend(const std::string& text) {
   throw CLI::ValidationError(
       "--blend", fmt::format("'{}' is neither a weight from 0 to 1 nor FROM:TO:COUNT, such as 0:1:5 with a count of 2 "
                              "to {:g}",
-                             text, kMostSteps));
+                             text, kMaxSteps));
 }
 
 // "0.4", or "0:1:5": so many from the first to the last.
@@ -36,7 +36,7 @@ std::vector<double> weightsOf(const std::string& text) {
   if (numbers.size() == 1 && isWeight(numbers[0])) return numbers;
   if (numbers.size() != 3 || !isWeight(numbers[0]) || !isWeight(numbers[1])) refuseBlend(text);
   const double count = numbers[2];
-  if (!(count >= 2 && count <= kMostSteps) || count != std::floor(count)) refuseBlend(text);
+  if (!(count >= 2 && count <= kMaxSteps) || count != std::floor(count)) refuseBlend(text);
   std::vector<double> weights;
   for (double i = 0; i < count; ++i) weights.push_back(std::lerp(numbers[0], numbers[1], i / (count - 1)));
   return weights;

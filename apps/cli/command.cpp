@@ -19,15 +19,15 @@ namespace {
 
 constexpr const char* kNotForPlans = "not for plans";  // a validator's name
 
-bool isSamePlace(const std::string& a, const std::string& b) {
+bool isSameLocation(const std::string& a, const std::string& b) {
   if (a == b) return true;
   if (a == "-" || b == "-") return false;
   std::error_code unseen;  // of files that are not there
   if (std::filesystem::equivalent(a, b, unseen)) return true;
-  const auto place = [&](const std::string& path) {
+  const auto positionOf = [&](const std::string& path) {
     return std::filesystem::weakly_canonical(std::filesystem::absolute(path, unseen), unseen);
   };
-  return place(a) == place(b);
+  return positionOf(a) == positionOf(b);
 }
 
 Warnings& allGiven() {
@@ -98,7 +98,7 @@ void checkOutput(std::string_view path, const std::vector<std::string_view>& ext
 void checkBeside(const std::string& option, const std::string& path, const std::vector<std::string>& others) {
   if (path.empty()) return;
   for (const std::string& other : others) {
-    if (!isSamePlace(path, other)) continue;
+    if (!isSameLocation(path, other)) continue;
     throw CLI::ValidationError(option, fmt::format("{} would take the place of {}", path, other));
   }
 }

@@ -184,9 +184,9 @@ void runRiggers(RiggersOptions options) {
   std::vector<Image> pictures;
   std::vector<double> inside;
   const auto look = [&](const Asset& asset) {
-    const double share = isSideBySide ? insideShare(readSkinnedModel(asset)) : 0;
+    const double fraction = isSideBySide ? insideFraction(readSkinnedModel(asset)) : 0;
     if (!options.sheet.empty()) pictures.push_back(render(makeScene(asset), bonesOnSheet()));
-    inside.push_back(share);
+    inside.push_back(fraction);
   };
   TerminalProgress progress(options.common.quiet);
   Warnings skipped;

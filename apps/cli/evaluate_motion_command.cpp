@@ -92,7 +92,7 @@ void run(const MotionEvaluationArguments& options) {
   to.poses.resize(from.poses.size(), to.poses.back());
   const PoseSequence toPlain = resultPlain.plain(to);
   RetargetOptions standing;
-  standing.characterStands = !isSkeletonAlone(asset);
+  standing.characterOnGround = !isSkeletonAlone(asset);
   const RetargetSetup setup(sourcePlain.skeleton(), resultPlain.skeleton(), map, standing, &from);
   const ShownJoints shownFrom = shownJoints(source.skeleton, sampled, setup.sourceKinematics.toBody()),
                     shownTo = shownJoints(result.skeleton, to, setup.targetKinematics.toBody());
@@ -153,7 +153,7 @@ void addRetargetingEvaluation(CLI::App& evaluate) {
   command->add_option("--method", options->trial.methods, "only these methods; limber retarget --help lists them")
       ->type_name("NAME")
       ->allow_extra_args(false);
-  command->add_option("--most-frames", options->trial.mostFrames, "of each clip")
+  command->add_option("--most-frames", options->trial.maxFrames, "of each clip")
       ->check(CLI::Range(5, 1000000).description(""))
       ->type_name("N")
       ->capture_default_str();

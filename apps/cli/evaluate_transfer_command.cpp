@@ -53,8 +53,7 @@ void addTransferEvaluation(CLI::App& evaluate) {
   CLI::App* command =
       evaluate.add_subcommand("transfer", "Transfer rigs between people and compare with their artists' own");
   command->add_option("FOLDER", options->folders, "folders with rigged characters")->required();
-  command
-      ->add_option("--sources", options->trials.mostSources, "rigs for each target: of its own joints, and of others")
+  command->add_option("--sources", options->trials.maxSources, "rigs for each target: of its own joints, and of others")
       ->check(CLI::Range(1, 1000).description(""))
       ->type_name("N")
       ->capture_default_str();

@@ -30,7 +30,7 @@ Json weightsJson(const SkinWeightInfo& weights) {
           {"min", weights.least},
           {"max", weights.greatest},
           {"largest_sum_error", weights.largestSumError},
-          {"most_influences", weights.mostInfluences}};
+          {"most_influences", weights.maxInfluences}};
 }
 
 Json sizeJson(const SkeletonSize& size) {
@@ -195,7 +195,7 @@ void printRig(const AssetInfo& info, bool withPositions) {
   const SkinWeightInfo& weights = *info.weights;
   printField("skin weights",
              fmt::format("{:.3g} to {:.3g}, largest |sum - 1| {:.2g}, at most {}", weights.least, weights.greatest,
-                         weights.largestSumError, counted(weights.mostInfluences, "influence")));
+                         weights.largestSumError, counted(weights.maxInfluences, "influence")));
   printField("without weights", counted(weights.withoutWeights, "vertex", "vertices"));
 }
 

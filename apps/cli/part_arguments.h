@@ -21,7 +21,7 @@ struct PartArguments {
         ->type_name("DETAIL")
         ->capture_default_str();
     command.add_option("--count", count, "parts by shape: so many; found from the shape by itself")
-        ->check(CLI::Range(Index{1}, kMostShapeParts))
+        ->check(CLI::Range(Index{1}, kMaxShapeParts))
         ->type_name("N");
   }
 

@@ -59,12 +59,12 @@ bool beginsWithClip(const Asset& asset, const SceneMaker& scenes) {
 
 std::vector<double> momentsOf(const PreviewArguments& options, double duration) {
   if (options.animate) {
-    constexpr double kMostFrames = 1000;
+    constexpr double kMaxFrames = 1000;
     const double count = std::round(duration * options.fps.value_or(kUsualFps));
-    if (count > kMostFrames) {
+    if (count > kMaxFrames) {
       throw Error(ErrorCode::kLimit, fmt::format("the animation would have {:.0f} pictures", count), "",
                   fmt::format("{:.0f} are the most: choose a smaller --fps, or cut the clip by limber convert --trim",
-                              kMostFrames));
+                              kMaxFrames));
     }
     return clipMoments(duration, std::max(1, static_cast<int>(count)), false);
   }
@@ -80,12 +80,12 @@ int sheetColumns(int count) {
 
 // All pictures are in memory at once.
 void checkPixels(std::size_t pictures, const PreviewOptions& preview) {
-  constexpr double kMost = 134217728;  // 400 megabytes
+  constexpr double kMax = 134217728;  // 400 megabytes
   const double pixels = static_cast<double>(preview.width) * preview.height * static_cast<double>(pictures);
-  if (pixels <= kMost) return;
+  if (pixels <= kMax) return;
   throw Error(ErrorCode::kLimit,
               fmt::format("{} pictures of {} x {} pixels are too many", pictures, preview.width, preview.height), "",
-              fmt::format("{:.0f} megapixels are the most: choose a smaller --size, or fewer pictures", kMost / 1e6));
+              fmt::format("{:.0f} megapixels are the most: choose a smaller --size, or fewer pictures", kMax / 1e6));
 }
 
 // A picture of a moment, a sheet of several, or an animation.

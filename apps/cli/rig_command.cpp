@@ -139,8 +139,8 @@ JointPin parsePin(const std::string& text) {
     std::istringstream numbers(text.substr(equals + 1));
     numbers.imbue(std::locale::classic());
     char comma = ',', second = ',', rest = 0;
-    if (numbers >> pin.place.x() >> comma >> pin.place.y() >> second >> pin.place.z() && comma == ',' &&
-        second == ',' && !(numbers >> rest) && pin.place.allFinite()) {
+    if (numbers >> pin.position.x() >> comma >> pin.position.y() >> second >> pin.position.z() && comma == ',' &&
+        second == ',' && !(numbers >> rest) && pin.position.allFinite()) {
       return pin;
     }
   }
@@ -167,7 +167,7 @@ RigPrograms findPrograms(const RigArguments& options) {
 }
 
 // A program that weighs gets a rig, with weights of limber's: the usual ones, or those that cost next to nothing.
-AutoRigReport rigAsTold(Asset& asset, AutoRigOptions rig, const RigPrograms& programs, Progress& progress) {
+AutoRigReport rigAsRequested(Asset& asset, AutoRigOptions rig, const RigPrograms& programs, Progress& progress) {
   if (programs.weights) rig.skinning = programs.weights->takesWeights ? AutoRigOptions().skinning : "nearest-bone";
   AutoRigReport report =
       programs.rigger ? rigByProgram(asset, *programs.rigger, rig, progress) : autoRig(asset, rig, progress);
@@ -218,7 +218,7 @@ void run(RigArguments options) {
   TerminalProgress progress(options.common.quiet);
   progress->stage("read");
   Asset asset = readAsset(options.input);
-  AutoRigReport report = rigAsTold(asset, options.rig, programs, *progress);
+  AutoRigReport report = rigAsRequested(asset, options.rig, programs, *progress);
   finishRig(asset, options.request, report);
   if (options.strict) refuseWarnings(report.warnings);
   progress->stage("write");

@@ -54,8 +54,8 @@ VrmaMotion motionOfModel(const Asset& model, const std::vector<Clip>& clips, War
   if (hasRig(asset)) rig = hangBones(asset, rig, read.bones);
   read.rest = vrmRestPose(asset, rig, read.bones);
   read.skeleton = rig.skeleton;
-  Warnings told;  // with the motion
-  read.clips = readClips(asset, rig, told);
+  Warnings reported;  // with the motion
+  read.clips = readClips(asset, rig, reported);
   return read;
 }
 

@@ -121,8 +121,8 @@ class PythonProgress {
  private:
   void tell(std::string_view stage, double fraction) {
     const double now = secondsNow();
-    if (now - told_ < kEvery || raised_) return;
-    told_ = now;
+    if (now - reported_ < kEvery || raised_) return;
+    reported_ = now;
     const py::gil_scoped_acquire acquire;
     try {
       if (PyErr_CheckSignals() != 0) throw py::error_already_set();
@@ -135,7 +135,7 @@ class PythonProgress {
 
   static constexpr double kEvery = 0.1;  // seconds
   py::object listener_;
-  double told_ = 0;
+  double reported_ = 0;
   std::exception_ptr raised_;
   Progress progress_;
 };
@@ -252,7 +252,7 @@ class Model {
     PythonProgress progress(listener);
     AutoRigReport report;
     Asset rigged = document().clone();  // other calls meanwhile, and what goes wrong, find the document as it was
-    progress.run([&](Progress& told) { report = autoRig(rigged, options, told); });
+    progress.run([&](Progress& reported) { report = autoRig(rigged, options, reported); });
     finishRig(rigged, request, report);
     character_ = Character(std::move(rigged));
     return pythonOf(toJson(report));
@@ -369,9 +369,10 @@ class Model {
 
 std::vector<JointPin> pinsFrom(const std::map<std::string, Doubles>& given) {
   std::vector<JointPin> pins;
-  for (const auto& [joint, place] : given) {
-    if (place.ndim() != 1 || place.shape(0) != 3) refuse("pins", fmt::format("{} must be a position (x, y, z)", joint));
-    pins.push_back({joint, Vec3(place.at(0), place.at(1), place.at(2))});
+  for (const auto& [joint, position] : given) {
+    if (position.ndim() != 1 || position.shape(0) != 3)
+      refuse("pins", fmt::format("{} must be a position (x, y, z)", joint));
+    pins.push_back({joint, Vec3(position.at(0), position.at(1), position.at(2))});
   }
   return pins;
 }
@@ -417,12 +418,12 @@ void raiseErrors(py::module_& module) {
     try {
       std::rethrow_exception(std::move(raised));
     } catch (const Error& error) {
-      const Error told = spellOptions(error, OptionSpelling::kPython);
-      const py::object made = py::reinterpret_borrow<py::object>(type)(told.what());
-      made.attr("code") = std::string(errorCodeName(told.code()));
-      made.attr("message") = told.message();
-      made.attr("where") = told.where();
-      made.attr("remedy") = told.remedy();
+      const Error reported = spellOptions(error, OptionSpelling::kPython);
+      const py::object made = py::reinterpret_borrow<py::object>(type)(reported.what());
+      made.attr("code") = std::string(errorCodeName(reported.code()));
+      made.attr("message") = reported.message();
+      made.attr("where") = reported.where();
+      made.attr("remedy") = reported.remedy();
       PyErr_SetObject(type, made.ptr());
     }
   });

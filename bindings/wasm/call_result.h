@@ -27,11 +27,11 @@ struct CallResult {
 inline OptionSpelling optionSpelling = OptionSpelling::kJavaScript;
 
 inline CallResult failure(const Error& error) {
-  const Error told = spellOptions(error, optionSpelling);
-  Json account = {{"code", std::string(errorCodeName(told.code()))},
-                  {"message", told.message()},
-                  {"where", told.where()},
-                  {"remedy", told.remedy()}};
+  const Error reported = spellOptions(error, optionSpelling);
+  Json account = {{"code", std::string(errorCodeName(reported.code()))},
+                  {"message", reported.message()},
+                  {"where", reported.where()},
+                  {"remedy", reported.remedy()}};
   if (const auto* known = dynamic_cast<const KnownError*>(&error)) {
     account["kind"] = std::string(errorKindName(known->kind()));
     account["values"] = Json::object();

@@ -18,9 +18,9 @@ using limber::wasm::guarded;
 // Behind what is there, from a multiple of 4 bytes on.
 Json placed(limber::Bytes& bytes, const limber::Bytes& more) {
   bytes.resize((bytes.size() + 3) / 4 * 4);
-  Json place = {{"offset", bytes.size()}, {"size", more.size()}};
+  Json entry = {{"offset", bytes.size()}, {"size", more.size()}};
   bytes.insert(bytes.end(), more.begin(), more.end());
-  return place;
+  return entry;
 }
 
 CallResult crowdOf(const limber::Asset& asset) {
@@ -44,12 +44,12 @@ CallResult crowdOf(const limber::Asset& asset) {
     const auto table = std::find_if(
         animation.tables.begin(), animation.tables.end(),
         [&](const limber::CrowdFrames& one) { return one.build == member.build && one.clip == member.clip; });
-    Json place = Json::array();
-    for (int i = 0; i < 16; ++i) place.push_back(member.place.matrix().data()[i]);
+    Json entry = Json::array();
+    for (int i = 0; i < 16; ++i) entry.push_back(member.transform.matrix().data()[i]);
     bodies.push_back({{"build", build->second},
                       {"table", table - animation.tables.begin()},
                       {"row", member.offset - table->first},
-                      {"place", std::move(place)}});
+                      {"place", std::move(entry)}});
   }
   result.account = limber::dumpReport({{"frames", animation.frames},
                                        {"seconds", animation.seconds},

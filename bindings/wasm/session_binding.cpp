@@ -38,8 +38,8 @@ class ShadingNormals {
     for (const Kept& kept : kept_) {
       if (kept.rig == rig) return kept.normals;
     }
-    constexpr std::size_t kMostKept = 4;
-    if (kept_.size() == kMostKept) kept_.erase(kept_.begin());
+    constexpr std::size_t kMaxKept = 4;
+    if (kept_.size() == kMaxKept) kept_.erase(kept_.begin());
     kept_.push_back({rig, limber::exportMesh(rig->asset(), rig->geometry()).normals});
     return kept_.back().normals;
   }
@@ -138,11 +138,11 @@ enum class DrawnBy {
 
 DrawnBy drawnBy(const limber::SessionState& state, const limber::Deformer& deformer) {
   if (deformer.name == limber::kLinearBlendDeformer.name) return DrawnBy::kWeights;
-  constexpr std::size_t kMostEntries = 2048 * 400;  // of 5 texels, in the least that WebGL 2 has room for
-  constexpr std::size_t kJointsOfEntry = 4, kMostJoints = limber::DirectDeltaMushOptions().mostJoints;
+  constexpr std::size_t kMaxEntries = 2048 * 400;  // of 5 texels, in the least that WebGL 2 has room for
+  constexpr std::size_t kJointsOfEntry = 4, kMaxJoints = limber::DirectDeltaMushOptions().maxJoints;
   const limber::SkinWeights& weights = state.rig->weights;
-  const std::size_t most = (std::max<std::size_t>(weights.slots, kMostJoints) + kJointsOfEntry - 1) / kJointsOfEntry;
-  return deformer.rows && most * weights.vertexCount() <= kMostEntries ? DrawnBy::kRows : DrawnBy::kEngine;
+  const std::size_t most = (std::max<std::size_t>(weights.slots, kMaxJoints) + kJointsOfEntry - 1) / kJointsOfEntry;
+  return deformer.rows && most * weights.vertexCount() <= kMaxEntries ? DrawnBy::kRows : DrawnBy::kEngine;
 }
 
 // {"form": "weights"}, {"form": "engine"} or {"form": "rows", "vertices", "entries"} with the rows as floats: of each
@@ -155,8 +155,8 @@ CallResult deformationOf(const limber::SessionState& state) {
   const std::shared_ptr<const limber::DeformRows> rows = limber::deformRows(*state.rig, deformer);
   std::vector<float> values;
   for (const Index row : rows->rowOf) {
-    const float* place = rows->places.data() + 4 * std::size_t{row};
-    values.insert(values.end(), place, place + 3);
+    const float* position = rows->positions.data() + 4 * std::size_t{row};
+    values.insert(values.end(), position, position + 3);
   }
   for (const Index row : rows->rowOf) {
     values.push_back(static_cast<float>(rows->begin[row]));
@@ -185,7 +185,7 @@ CallResult posedOf(const limber::SessionState& state, ShadingNormals& normals) {
 // Of the joints that hold on to a place, which feet do where they stand at a clip's moment.
 std::string pinnedOf(const limber::SessionState& state) {
   Json pinned = Json::array();
-  for (const limber::HeldTarget& target : state.targets) pinned.push_back(target.joint);
+  for (const limber::PinnedTarget& target : state.targets) pinned.push_back(target.joint);
   return textOf({{"pinned", pinned}});
 }
 
@@ -366,7 +366,8 @@ LIMBER_EXPORT CallResult* limber_session_live_recorded(const SessionHandle* hand
 LIMBER_EXPORT CallResult* limber_session_source_joints(const SessionHandle* handle) {
   return guarded({}, [&]() -> CallResult {
     std::vector<float> values;
-    for (const limber::Vec3& place : limber::sourceJoints(handle->session().state().movement)) append(values, place);
+    for (const limber::Vec3& position : limber::sourceJoints(handle->session().state().movement))
+      append(values, position);
     return {true, bytesOf(values), "{}"};
   });
 }

@@ -15,7 +15,7 @@ int main(int argc, char** argv) {
 
     // Once: which joint follows which, how the bodies' spaces compare, what the surface needs.
     limber::RetargetOptions options;
-    options.characterStands = true;
+    options.characterOnGround = true;
     const limber::RetargetSetup setup(motion.skeleton, rig.skeleton,
                                       limber::matchSkeletons(motion.skeleton, rig.skeleton), options);
     const std::unique_ptr<limber::FrameRetargeter> retargeter = limber::findRetargetMethod("limb-ik").make(setup);

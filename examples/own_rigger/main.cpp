@@ -28,9 +28,9 @@ limber::Skeleton spineOf(const limber::TriMesh& mesh) {
     limber::Joint joint;
     joint.name = "spine_" + std::to_string(j);
     if (!skeleton.joints.empty()) joint.parent = skeleton.jointCount() - 1;
-    const limber::Vec3 place = sums[j] / counts[j];
-    joint.rest.translation = place - before;  // seen from its parent
-    before = place;
+    const limber::Vec3 position = sums[j] / counts[j];
+    joint.rest.translation = position - before;  // seen from its parent
+    before = position;
     skeleton.joints.push_back(joint);
   }
   return skeleton;

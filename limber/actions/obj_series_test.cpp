@@ -214,9 +214,9 @@ TEST_F(ObjSeriesFiles, CanBeCancelled) {
   std::vector<std::filesystem::path> files;
   for (int f = 0; f < 6; ++f) files.push_back(put("a" + std::to_string(f) + ".obj", touchingBoxes(float(f))));
   files.push_back(folder_ / "is-not-reached.obj");
-  int told = 0;
+  int reported = 0;
   Progress progress([&](std::string_view, double) {
-    if (++told == 5) progress.cancel();
+    if (++reported == 5) progress.cancel();
   });
   try {
     readObjSeries(files, 30, progress);
@@ -224,7 +224,7 @@ TEST_F(ObjSeriesFiles, CanBeCancelled) {
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::kCancelled);
   }
-  EXPECT_EQ(told, 5);
+  EXPECT_EQ(reported, 5);
 }
 
 }  // namespace

@@ -34,13 +34,13 @@ TEST(OptionSpelling, OtherTextStays) {
 }
 
 TEST(OptionSpelling, OfAnErrorTheRemedyAndAnOptionThatIsToBlame) {
-  const auto told = [](const char* message, const char* where, const char* remedy) {
+  const auto reported = [](const char* message, const char* where, const char* remedy) {
     return std::string(
         spellOptions(Error(ErrorCode::kBadArgument, message, where, remedy), OptionSpelling::kProgram).what());
   };
-  EXPECT_EQ(told("takes 1 to 8, not `up`", "`max-influences`", "leave `up` out"),
+  EXPECT_EQ(reported("takes 1 to 8, not `up`", "`max-influences`", "leave `up` out"),
             "--max-influences: takes 1 to 8, not `up` (leave --up out)");
-  EXPECT_EQ(told("no joint", "`up`.glb", ""), "`up`.glb: no joint");
+  EXPECT_EQ(reported("no joint", "`up`.glb", ""), "`up`.glb: no joint");
   EXPECT_EQ(spellOptions(Error(ErrorCode::kLimit, ""), OptionSpelling::kProgram).code(), ErrorCode::kLimit);
 }
 

@@ -21,7 +21,7 @@ namespace limber {
 namespace {
 
 constexpr std::string_view kVersionKey = "limber_adapter";
-constexpr double kLeastSize = 1e-3, kMostSize = 1e6, kLeastUnit = 1e-6, kMostUnit = 1e6;
+constexpr double kMinSize = 1e-3, kMaxSize = 1e6, kMinUnit = 1e-6, kMaxUnit = 1e6;
 // Learned riggers load networks of gigabytes.
 constexpr std::size_t kMemoryByDefault = std::size_t{16384} << 20;
 
@@ -117,12 +117,12 @@ std::span<const std::string_view> placeholdersOf(AdapterKind kind) {
   return kModels;
 }
 
-void checkPlaceholders(const JsonView& place, std::string_view text, AdapterKind kind) {
+void checkPlaceholders(const JsonView& location, std::string_view text, AdapterKind kind) {
   const std::span<const std::string_view> known = placeholdersOf(kind);
   walkPlaceholders(text, [&](std::string_view name, bool isName) {
     if (!isName) return;
     if (std::find(known.begin(), known.end(), name) == known.end()) {
-      place.fail(
+      location.fail(
           fmt::format("has a placeholder that is not known: {{{}}}; there are: {}", name, fmt::join(known, ", ")));
     }
   });
@@ -183,8 +183,8 @@ void readSteps(const JsonView& root, Adapter& adapter) {
 double unitOf(const JsonView& object, double byDefault) {
   constexpr std::string_view kKey = "metres_per_unit";
   const double unit = object.exists() ? object.number(kKey, byDefault) : byDefault;
-  if (!(unit >= kLeastUnit && unit <= kMostUnit)) {
-    object.member(kKey).fail(fmt::format("is not from {} to {}", kLeastUnit, kMostUnit));
+  if (!(unit >= kMinUnit && unit <= kMaxUnit)) {
+    object.member(kKey).fail(fmt::format("is not from {} to {}", kMinUnit, kMaxUnit));
   }
   return unit;
 }
@@ -205,8 +205,8 @@ void readInput(const JsonView& input, Adapter& adapter) {
     input.member("up").fail("is not +y, which a GLB always has");
   }
   if (input.exists()) adapter.inputSize = input.number("size", adapter.inputSize);
-  if (!(adapter.inputSize >= kLeastSize && adapter.inputSize <= kMostSize)) {
-    input.member("size").fail(fmt::format("is not from {} to {}", kLeastSize, kMostSize));
+  if (!(adapter.inputSize >= kMinSize && adapter.inputSize <= kMaxSize)) {
+    input.member("size").fail(fmt::format("is not from {} to {}", kMinSize, kMaxSize));
   }
   if (input.exists()) adapter.takesWeights = input.flag("weights", true);
 }

@@ -44,14 +44,14 @@ std::vector<std::string> adapterNames(const std::vector<fs::path>& folders) {
 
 Adapter readAdapter(const fs::path& file) {
   std::error_code unseen;
-  const fs::path place = fs::absolute(file, unseen).lexically_normal();
-  const Bytes bytes = readFile(place);
+  const fs::path location = fs::absolute(file, unseen).lexically_normal();
+  const Bytes bytes = readFile(location);
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  Adapter adapter = adapterFromJson(text, place.stem().string());
-  adapter.file = place;
+  Adapter adapter = adapterFromJson(text, location.stem().string());
+  adapter.file = location;
   for (AdapterStep& step : adapter.steps) {
     const bool isOfRun = step.folder.empty() || step.folder.string().front() == '{';
-    if (!isOfRun) step.folder = place.parent_path() / step.folder;  // an absolute one stays
+    if (!isOfRun) step.folder = location.parent_path() / step.folder;  // an absolute one stays
   }
   return adapter;
 }

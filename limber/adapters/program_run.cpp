@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t kMostWords = 300;  // bytes of a program's own words
+constexpr std::size_t kMaxWords = 300;  // bytes of a program's own words
 
 // Of one run, gone with it.
 class RunFolder {
@@ -95,8 +95,8 @@ Job jobOf(const Adapter& adapter, const AdapterStep& step, const AdapterPaths& p
 
 // Of what it says of errors, else of its output.
 std::string lastWords(const JobResult& result) {
-  const std::string words = lastLine(result.error, kMostWords);
-  return validUtf8(words.empty() ? lastLine(result.out, kMostWords) : words);
+  const std::string words = lastLine(result.error, kMaxWords);
+  return validUtf8(words.empty() ? lastLine(result.out, kMaxWords) : words);
 }
 
 std::string saying(const JobResult& result) {
@@ -110,7 +110,7 @@ bool ranOutOfMemory(const JobResult& result) {
   constexpr std::array<std::string_view, 4> kSigns = {"memoryerror", "out of memory", "cannot allocate memory",
                                                       "std::bad_alloc"};
   if (result.outcome == JobOutcome::kCrashed && result.code == SIGKILL) return true;  // not ours: that is kTimedOut
-  std::string words = lastLine(result.error, kMostWords);
+  std::string words = lastLine(result.error, kMaxWords);
   std::transform(words.begin(), words.end(), words.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? c | 0x20 : c; });
   return std::any_of(kSigns.begin(), kSigns.end(),
                      [&](std::string_view sign) { return words.find(sign) != std::string::npos; });

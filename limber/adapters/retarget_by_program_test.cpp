@@ -33,11 +33,11 @@ using testing::shellAdapter;
 constexpr double kRate = 25;
 constexpr Index kFrames = 12;
 
-Joint jointOf(const char* name, std::optional<Index> parent, const Vec3& place, const Vec3& axis, double turn) {
+Joint jointOf(const char* name, std::optional<Index> parent, const Vec3& position, const Vec3& axis, double turn) {
   Joint joint;
   joint.name = name;
   joint.parent = parent;
-  joint.rest.translation = place;
+  joint.rest.translation = position;
   joint.rest.rotation = Quat(Eigen::AngleAxisd(turn, axis.normalized()));
   return joint;
 }

@@ -150,7 +150,7 @@ class FrameTransfer {
       : character_(character), file_(file), same_(same), rest_(restPose(character)), moves_(character.joints.size()) {
     for (const Affine& global : restGlobals(character)) restTurns_.push_back(decompose(global).rotation);
     Box box;
-    for (const Vec3& place : restPositions(character)) box.add(place);
+    for (const Vec3& position : restPositions(character)) box.add(position);
     const double still = kStill * box.diagonal();
     for (Index j = 0; j < character.jointCount(); ++j) {
       if (!same.inFile[j] || !character.joints[j].parent || !isBelowItsParent(j)) continue;

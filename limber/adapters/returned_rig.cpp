@@ -22,7 +22,7 @@ namespace limber {
 namespace {
 
 // Of the model's longest side: rounding of a file's floats in other units.
-constexpr double kSamePlace = 1e-5;
+constexpr double kSamePosition = 1e-5;
 // Programs that take triangles away move the surface by less; of another surface most lies farther. A hundredth of the
 // vertices may: small parts go first.
 constexpr double kNearSurface = 0.01, kMayBeFar = 0.01;
@@ -131,11 +131,11 @@ std::vector<SurfacePoint> matchingPoints(const RigWithSurface& rig, const TriMes
         points[v] = corners.at(rig.surface, *same, 0);
         continue;
       }
-      const Vec3 place = working.position(static_cast<Index>(v));
-      const SurfacePoint vertex = vertexTree.nearestPoint(place);
-      points[v] = vertex.distance <= kSamePlace
+      const Vec3 position = working.position(static_cast<Index>(v));
+      const SurfacePoint vertex = vertexTree.nearestPoint(position);
+      points[v] = vertex.distance <= kSamePosition
                       ? corners.at(rig.surface, vertices.triangles[vertex.triangle][0], vertex.distance)
-                      : surface.nearestPoint(place);
+                      : surface.nearestPoint(position);
     }
   });
   return points;

@@ -36,7 +36,7 @@ using testing::putFile;
 using testing::shellAdapter;
 
 // Where the model stands in its world.
-Affine placeInWorld() {
+Affine modelTransform() {
   Affine map = Affine::Identity();
   map.translate(Vec3(3, -2, 5));
   map.scale(2.5);
@@ -44,7 +44,7 @@ Affine placeInWorld() {
 }
 
 // The made body under a node that moves and scales it.
-Asset placedModel() {
+Asset offsetModel() {
   Asset asset = meshAsset(madeBody());
   asset.document.nodes[0].translation = Vec3(3, -2, 5);
   asset.document.nodes[0].scale = Vec3::Constant(2.5);
@@ -70,7 +70,7 @@ class RigByProgram : public ::testing::Test {
   }
 
   std::string problemOf(const Adapter& adapter) {
-    Asset asset = placedModel();
+    Asset asset = offsetModel();
     const Bytes before = writeGlb(asset);
     try {
       rig(asset, adapter);
@@ -86,7 +86,7 @@ class RigByProgram : public ::testing::Test {
 
   // The rig is the made one where the model stands, and the model's own vertices are untouched.
   static void expectMadeRig(const Asset& asset, const SkinWeights& expected, double tolerance) {
-    const Asset untouched = placedModel();
+    const Asset untouched = offsetModel();
     EXPECT_EQ(readFloats(asset, 0), readFloats(untouched, 0));
     const Geometry before = collectGeometry(untouched), after = collectGeometry(asset);
     ASSERT_EQ(after.positions.size(), before.positions.size());
@@ -100,13 +100,13 @@ class RigByProgram : public ::testing::Test {
     for (const testing::MadeJoint& made : madeJoints()) {
       const auto joint = read.skeleton.find(made.name);
       ASSERT_TRUE(joint) << made.name;
-      EXPECT_LT((globals[*joint].translation() - placeInWorld() * made.place).norm(), 1e-4) << made.name;
+      EXPECT_LT((globals[*joint].translation() - modelTransform() * made.position).norm(), 1e-4) << made.name;
       for (Index v = 0; v < weights.vertexCount(); ++v) {
-        EXPECT_NEAR(shareOf(weights, v, *joint), shareOf(expected, v, indexOf(made.name)), tolerance);
+        EXPECT_NEAR(weightOf(weights, v, *joint), weightOf(expected, v, indexOf(made.name)), tolerance);
       }
     }
   }
-  static double shareOf(const SkinWeights& weights, Index vertex, Index joint) {
+  static double weightOf(const SkinWeights& weights, Index vertex, Index joint) {
     for (Index slot = 0; slot < weights.slots; ++slot) {
       const float weight = weights.weightsOf(vertex)[slot];
       if (weights.jointsOf(vertex)[slot] == joint && weight > 0) return static_cast<double>(weight);
@@ -140,7 +140,7 @@ TEST_F(RigByProgram, ATextRiggerReadsTheObjAndItsRigIsAttached) {
     putFile(folder_.path() / "joints.txt", text);
     adapter.steps = {{{"/bin/sh", "-c", "awk -f rigger.awk joints.txt \"$1\" > \"$2\"", "sh", "{input}", "{output}"},
                       folder_.path()}};
-    Asset asset = placedModel();
+    Asset asset = offsetModel();
     const AutoRigReport report = rig(asset, adapter);
     EXPECT_EQ(report.rigger, "fake");
     EXPECT_EQ(report.skinning, "fake");
@@ -161,7 +161,7 @@ TEST_F(RigByProgram, BothWordsForJointsGiveTheSameBytes) {
   const Affine map = madeToHanded(shellAdapter(""));
   Bytes made[2];
   for (int i = 0; i < 2; ++i) {
-    Asset asset = placedModel();
+    Asset asset = offsetModel();
     rig(asset, copying(madeText(map, madeBody(), madeWeights(madeBody()), i == 0 ? "joints" : "joint"),
                        AdapterFormat::kRignetText));
     expectMadeRig(asset, madeWeights(madeBody()), 1e-6);
@@ -172,7 +172,7 @@ TEST_F(RigByProgram, BothWordsForJointsGiveTheSameBytes) {
 
 TEST_F(RigByProgram, ASkeletonAloneGetsLimbersWeights) {
   const std::string skeleton = madeText(madeToHanded(shellAdapter("")), madeBody(), {});
-  Asset asset = placedModel();
+  Asset asset = offsetModel();
   AutoRigOptions options;
   options.skinning = "geodesic-voxel";
   const AutoRigReport report = rig(asset, copying(skeleton, AdapterFormat::kRignetText), options);
@@ -187,14 +187,14 @@ TEST_F(RigByProgram, WeightsThatTheAdapterPassesOverAreMadeAnew) {
   Adapter adapter = copying(madeText(madeToHanded(shellAdapter("")), madeBody(), madeWeights(madeBody())),
                             AdapterFormat::kRignetText);
   adapter.ignoresWeights = true;
-  Asset asset = placedModel();
+  Asset asset = offsetModel();
   EXPECT_EQ(rig(asset, adapter).skinning, "bone-heat");
 }
 
 TEST_F(RigByProgram, VerticesWithoutALineTakeTheWeightsOfWhatIsNearest) {
   std::string text = madeText(madeToHanded(shellAdapter("")), madeBody(), madeWeights(madeBody()));
   text.erase(text.find("skin 20 "), text.find("skin 30 ") - text.find("skin 20 "));
-  Asset asset = placedModel();
+  Asset asset = offsetModel();
   const AutoRigReport report = rig(asset, copying(text, AdapterFormat::kRignetText));
   ASSERT_EQ(report.warnings.items().size(), 1u);
   EXPECT_EQ(report.warnings.items()[0].kind, "unbound-vertices");
@@ -220,9 +220,9 @@ TEST_F(RigByProgram, AFloorIsNotHandedOverAndFollowsTheRoot) {
     const SkinWeights weights = readWeights(asset, collectGeometry(asset), read);
     const Index arm = *read.skeleton.find("arm"), hips = *read.skeleton.find("hips");
     for (Index v = 0; v < first; ++v) {
-      EXPECT_NEAR(shareOf(weights, v, arm), shareOf(made, v, indexOf("arm")), 1e-5) << v;
+      EXPECT_NEAR(weightOf(weights, v, arm), weightOf(made, v, indexOf("arm")), 1e-5) << v;
     }
-    for (Index v = first; v < mesh.vertexCount(); ++v) EXPECT_EQ(shareOf(weights, v, hips), 1) << v;
+    for (Index v = first; v < mesh.vertexCount(); ++v) EXPECT_EQ(weightOf(weights, v, hips), 1) << v;
   };
   const AutoRigReport report =
       rig(asset, copying(madeText(madeToHanded(shellAdapter("")), madeBody(), made), AdapterFormat::kRignetText));
@@ -265,17 +265,17 @@ TEST_F(RigByProgram, SkinsOfOtherPosesAreHandedOverInOne) {
   testing::addCapsule(parts[0], Vec3(0, 0, 0), Vec3(0, 1.2, 0), 0.2);
   testing::addCapsule(parts[0], Vec3(0, 0.1, 0.3), Vec3(0, 0.1, 0.6), 0.08);
   testing::addCapsule(parts[1], Vec3(0.3, 1, 0), Vec3(1, 1, 0), 0.1);
-  SkinWeights held;
-  held.slots = 1;
+  SkinWeights weights;
+  weights.slots = 1;
   for (const TriMesh& part : parts) {
     const Json primitive = scene.primitive(part.positions, part.triangles);
     nodes.push_back(scene.addNode({{"mesh", scene.addMesh(Json::array({primitive}))}}));
-    held.joints.insert(held.joints.end(), part.positions.size(), indexOf(nodes.size() == 1 ? "hips" : "arm"));
+    weights.joints.insert(weights.joints.end(), part.positions.size(), indexOf(nodes.size() == 1 ? "hips" : "arm"));
   }
-  held.weights.assign(held.joints.size(), 1);
+  weights.weights.assign(weights.joints.size(), 1);
   scene.asset().document.scene = scene.addScene(nodes);
   Asset asset = scene.build();
-  const std::vector<Index> joints = attachRig(asset, collectGeometry(asset), testing::madeSkeleton(), held);
+  const std::vector<Index> joints = attachRig(asset, collectGeometry(asset), testing::madeSkeleton(), weights);
   testing::bindElsewhere(asset, nodes[1], {joints[indexOf("arm")]}, Vec3f(0, 0, 4));
   Adapter adapter =
       copying(madeGlb(madeBody(), madeWeights(madeBody()), madeToHanded(shellAdapter(""))), AdapterFormat::kGlb);
@@ -359,7 +359,7 @@ TEST_F(RigByProgram, ReorderedAndDoubledVerticesAreKnownByTheirPlaces) {
     Adapter adapter = copying(madeGlb(body, weights, madeToHanded(plain)), AdapterFormat::kGlb);
     adapter.inputSize = 2;
     adapter.inputFormat = input;
-    Asset asset = placedModel();
+    Asset asset = offsetModel();
     EXPECT_EQ(rig(asset, adapter).skinning, "fake");
     expectMadeRig(asset, madeWeights(madeBody()), 1e-5);
   }
@@ -370,7 +370,7 @@ TEST_F(RigByProgram, AnFbxIsReadToo) {
   SkinWeights weights = madeWeights(body);
   const Affine map = madeToHanded(shellAdapter(""));
   for (Vec3f& p : body.positions) p = (map * Vec3(p.cast<double>())).cast<float>();
-  Asset asset = placedModel();
+  Asset asset = offsetModel();
   const AutoRigReport report =
       rig(asset,
           copying(testing::fbxText(body, movedSkeleton(testing::madeSkeleton(), map), weights), AdapterFormat::kFbx));
@@ -386,7 +386,7 @@ TEST_F(RigByProgram, WhatIsMovedAndScaledIsRefusedUnlessTheAdapterSaysSo) {
   Adapter adapter = copying(glb, AdapterFormat::kGlb);
   EXPECT_THAT(problemOf(adapter), HasSubstr("model.glb: the surface is 40 times as large as what was handed over"));
   adapter.mayRescale = true;
-  Asset asset = placedModel();
+  Asset asset = offsetModel();
   rig(asset, adapter);
   expectMadeRig(asset, madeWeights(madeBody()), 1e-4);
 }
@@ -448,8 +448,8 @@ TEST_F(RigByProgram, FewerTrianglesStillTellTheWeights) {
   for (const testing::MadeJoint& made : madeJoints()) {
     const Index joint = *read.skeleton.find(made.name), own = indexOf(made.name);
     for (Index v = 0; v < ends.size(); ++v) {
-      const double expected = 0.5 * (shareOf(coarse, ends[v].first, own) + shareOf(coarse, ends[v].second, own));
-      EXPECT_NEAR(shareOf(weights, v, joint), expected, 1e-4) << made.name << " at " << v;
+      const double expected = 0.5 * (weightOf(coarse, ends[v].first, own) + weightOf(coarse, ends[v].second, own));
+      EXPECT_NEAR(weightOf(weights, v, joint), expected, 1e-4) << made.name << " at " << v;
     }
   }
 }
@@ -457,7 +457,7 @@ TEST_F(RigByProgram, FewerTrianglesStillTellTheWeights) {
 TEST_F(RigByProgram, ARigOfTheModelsOwnIsReplacedOnlyWhereAsked) {
   const std::string text = madeText(madeToHanded(shellAdapter("")), madeBody(), madeWeights(madeBody()));
   const Adapter adapter = copying(text, AdapterFormat::kRignetText);
-  Asset asset = placedModel();
+  Asset asset = offsetModel();
   rig(asset, adapter);
   EXPECT_THROW(rig(asset, adapter), Error);
   AutoRigOptions options;
@@ -486,7 +486,7 @@ Adapter weighing(std::string_view line) {
 }
 
 TEST_F(RigByProgram, AProgramThatGivesBackWhatItIsGivenChangesNothing) {
-  Asset asset = placedModel();
+  Asset asset = offsetModel();
   rig(asset, copying(madeText(madeToHanded(shellAdapter("")), madeBody(), madeWeights(madeBody())),
                      AdapterFormat::kRignetText));
   Progress progress;
@@ -495,7 +495,7 @@ TEST_F(RigByProgram, AProgramThatGivesBackWhatItIsGivenChangesNothing) {
 }
 
 TEST_F(RigByProgram, WeightsOfAProgramTakeThePlaceOfLimbers) {
-  Asset asset = placedModel();
+  Asset asset = offsetModel();
   const std::string skeleton = madeText(madeToHanded(shellAdapter("")), madeBody(), {});
   rig(asset, copying(skeleton, AdapterFormat::kRignetText));
   const fs::path file = folder_.path() / "weighed.glb";
@@ -518,7 +518,7 @@ Bytes renamedGlb(const Affine& map, bool isElsewhere) {
 }
 
 TEST_F(RigByProgram, JointsUnderOtherNamesAreKnownByTheirPlaces) {
-  Asset asset = placedModel();
+  Asset asset = offsetModel();
   const std::string skeleton = madeText(madeToHanded(shellAdapter("")), madeBody(), {});
   rig(asset, copying(skeleton, AdapterFormat::kRignetText));
   const fs::path file = folder_.path() / "weighed.glb";

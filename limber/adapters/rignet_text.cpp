@@ -18,7 +18,7 @@ namespace limber {
 
 namespace {
 
-constexpr Index kMostSlots = 8;
+constexpr Index kMaxSlots = 8;
 
 struct Link {
   std::string_view parent, child;
@@ -33,7 +33,7 @@ struct VertexLine {
 
 struct TextJoint {
   std::string_view name;
-  Vec3 place;
+  Vec3 position;
   std::optional<std::size_t> parent;  // into the joints as they come
 };
 
@@ -118,7 +118,7 @@ class RignetReader {
     }
     TextJoint& joint = joints_.emplace_back();
     joint.name = words[1];
-    for (int axis = 0; axis < 3; ++axis) joint.place[axis] = numberOf(words[2 + axis], line_);
+    for (int axis = 0; axis < 3; ++axis) joint.position[axis] = numberOf(words[2 + axis], line_);
   }
 
   void addVertex(const std::vector<std::string_view>& words) {
@@ -163,7 +163,7 @@ class RignetReader {
       std::stable_partition(roots.begin(), roots.end(), [&](std::size_t j) { return j == root; });
     }
     Skeleton skeleton;
-    placeOf_.assign(joints_.size(), std::nullopt);
+    indexOf_.assign(joints_.size(), std::nullopt);
     std::vector<std::size_t> open(roots.rbegin(), roots.rend());
     while (!open.empty()) {
       const std::size_t j = open.back();
@@ -172,7 +172,7 @@ class RignetReader {
       open.insert(open.end(), children[j].rbegin(), children[j].rend());
     }
     for (std::size_t j = 0; j < joints_.size(); ++j) {
-      if (!placeOf_[j]) fail(fmt::format("the joint '{}' is below itself", shown(joints_[j].name)));
+      if (!indexOf_[j]) fail(fmt::format("the joint '{}' is below itself", shown(joints_[j].name)));
     }
     if (roots.size() > 1) {
       warnings.add("loose-joints", "joints hang on nothing and are roots of their own",
@@ -185,29 +185,29 @@ class RignetReader {
     const TextJoint& from = joints_[j];
     Joint& joint = skeleton.joints.emplace_back();
     joint.name = from.name;
-    joint.rest.translation = from.place;
+    joint.rest.translation = from.position;
     if (from.parent) {
-      joint.parent = placeOf_[*from.parent];
-      joint.rest.translation -= joints_[*from.parent].place;
+      joint.parent = indexOf_[*from.parent];
+      joint.rest.translation -= joints_[*from.parent].position;
     }
-    placeOf_[j] = skeleton.jointCount() - 1;
+    indexOf_[j] = skeleton.jointCount() - 1;
   }
 
   SkinWeights weightsOf(const Skeleton& skeleton) const {
     SkinWeights weights;
-    weights.slots = std::min(kMostSlots, skeleton.jointCount());
+    weights.slots = std::min(kMaxSlots, skeleton.jointCount());
     weights.joints.assign(std::size_t{vertexCount_} * weights.slots, 0);
     weights.weights.assign(std::size_t{vertexCount_} * weights.slots, 0.0f);
     std::vector<bool> isBound(vertexCount_, false);
-    std::vector<std::pair<double, Index>> shares;
+    std::vector<std::pair<double, Index>> influences;
     for (const VertexLine& line : vertices_) {
       if (isBound[line.vertex]) fail(fmt::format("binds vertex {} a second time", line.vertex), line.line);
       isBound[line.vertex] = true;
-      readShares(line, shares);
-      for (std::size_t slot = 0; slot < std::min<std::size_t>(shares.size(), weights.slots); ++slot) {
+      readInfluences(line, influences);
+      for (std::size_t slot = 0; slot < std::min<std::size_t>(influences.size(), weights.slots); ++slot) {
         const std::size_t at = std::size_t{line.vertex} * weights.slots + slot;
-        weights.weights[at] = static_cast<float>(shares[slot].first);
-        weights.joints[at] = shares[slot].second;
+        weights.weights[at] = static_cast<float>(influences[slot].first);
+        weights.joints[at] = influences[slot].second;
       }
     }
     normalizeWeights(weights);
@@ -215,17 +215,18 @@ class RignetReader {
   }
 
   // Strongest first.
-  void readShares(const VertexLine& line, std::vector<std::pair<double, Index>>& shares) const {
-    shares.clear();
+  void readInfluences(const VertexLine& line, std::vector<std::pair<double, Index>>& influences) const {
+    influences.clear();
     for (std::size_t i = 0; i < line.words.size(); i += 2) {
-      const Index joint = *placeOf_[jointCalled(line.words[i], line.line)];
+      const Index joint = *indexOf_[jointCalled(line.words[i], line.line)];
       const double weight = numberOf(line.words[i + 1], line.line);
       if (weight < 0) fail(fmt::format("has the weight {}", shown(line.words[i + 1])), line.line);
-      const auto same = std::find_if(shares.begin(), shares.end(), [&](const auto& s) { return s.second == joint; });
-      if (same != shares.end()) fail(fmt::format("has '{}' a second time", shown(line.words[i])), line.line);
-      if (weight > 0) shares.emplace_back(weight, joint);
+      const auto same =
+          std::find_if(influences.begin(), influences.end(), [&](const auto& s) { return s.second == joint; });
+      if (same != influences.end()) fail(fmt::format("has '{}' a second time", shown(line.words[i])), line.line);
+      if (weight > 0) influences.emplace_back(weight, joint);
     }
-    std::sort(shares.begin(), shares.end(), [](const auto& a, const auto& b) {
+    std::sort(influences.begin(), influences.end(), [](const auto& a, const auto& b) {
       return a.first != b.first ? a.first > b.first : a.second < b.second;
     });
   }
@@ -235,7 +236,7 @@ class RignetReader {
   std::size_t line_ = 0, rootLine_ = 0;
   std::vector<TextJoint> joints_;
   std::map<std::string_view, std::size_t> jointOf_;
-  std::vector<std::optional<Index>> placeOf_;  // in the skeleton
+  std::vector<std::optional<Index>> indexOf_;  // in the skeleton
   std::vector<Link> links_;
   std::vector<VertexLine> vertices_;
 };

@@ -170,8 +170,8 @@ void checkJointSpace(const Skeleton& skeleton, const TriMesh& surface, const Ski
   const Box box = surfaceBox(surface);
   const std::vector<Affine> globals = restGlobals(skeleton);
   for (std::size_t j = 0; j < globals.size(); ++j) {
-    const Vec3 place = globals[j].translation();
-    const double outside = (place - place.cwiseMax(box.min).cwiseMin(box.max)).norm() / box.longestSide();
+    const Vec3 position = globals[j].translation();
+    const double outside = (position - position.cwiseMax(box.min).cwiseMin(box.max)).norm() / box.longestSide();
     if (outside <= kJointsBeside) continue;
     throw Error(ErrorCode::kBadData,
                 fmt::format("the joint '{}' lies outside the model, by {:.3g} of its longest side",

@@ -150,11 +150,11 @@ class EntryList {
     entries_.push_back(std::move(entry));
   }
 
-  void addName(const std::string& name, const JsonView& place) {
+  void addName(const std::string& name, const JsonView& location) {
     if (isPathPattern(name)) {
       std::vector<std::string> files = filesMatching(folder_, name);
       std::erase_if(files, [&](const std::string& file) { return outputs_.holds(folder_ / file); });
-      if (files.empty()) place.fail("matches no file, the batch's outputs left out");
+      if (files.empty()) location.fail("matches no file, the batch's outputs left out");
       for (const std::string& file : files) addFile(file);
       return;
     }
@@ -191,34 +191,34 @@ class EntryList {
   }
 
   // Within the folder of outputs, wherever the input lies.
-  static fs::path placeOf(const std::string& input) {
-    fs::path place;
+  static fs::path pathOf(const std::string& input) {
+    fs::path location;
     for (const fs::path& part : fs::path(input).relative_path()) {
-      if (part != "..") place /= part;
+      if (part != "..") location /= part;
     }
-    return place;
+    return location;
   }
 
   void nameOutputs(const std::string& extension) {
     std::map<std::string, std::size_t> users;
     const auto plain = [&](const BatchEntry& entry) {
-      return placeOf(entry.input).replace_extension(extension).generic_string();
+      return pathOf(entry.input).replace_extension(extension).generic_string();
     };
     for (const BatchEntry& entry : entries_) ++users[plain(entry)];
     std::map<std::string, const BatchEntry*> taken;
     for (BatchEntry& entry : entries_) {
       entry.output = plain(entry);
       if (users[entry.output] > 1) {
-        fs::path place = placeOf(entry.input);
-        std::string own = place.extension().string();
+        fs::path location = pathOf(entry.input);
+        std::string own = location.extension().string();
         std::replace(own.begin(), own.end(), '.', '_');
-        entry.output = place.replace_filename(place.stem().string() + own + extension).generic_string();
+        entry.output = location.replace_filename(location.stem().string() + own + extension).generic_string();
       }
       // A folder's name may be told by either case of its letters.
-      if (const fs::path place = entry.output; lowerCase(place.begin()->string()) == kBatchOwnFolder) {
+      if (const fs::path location = entry.output; lowerCase(location.begin()->string()) == kBatchOwnFolder) {
         throw Error(ErrorCode::kBadData,
                     fmt::format("would be written to '{}', among the batch's records", entry.output), entry.input,
-                    fmt::format("take '{}' out of the input's path", place.begin()->string()));
+                    fmt::format("take '{}' out of the input's path", location.begin()->string()));
       }
       if (!taken.emplace(entry.output, &entry).second) {
         throw Error(ErrorCode::kBadData, fmt::format("two inputs would be written to '{}'", entry.output), entry.input,

@@ -35,9 +35,9 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view kThreads = "--threads";
-constexpr std::size_t kMostOutput = 1 << 16;  // bytes kept of what a command prints
-constexpr double kPaceSpan = 60;              // seconds that the pace is taken over
-constexpr double kTurn = 0.02;                // seconds that entries are looked at before those that run are
+constexpr std::size_t kMaxOutput = 1 << 16;  // bytes kept of what a command prints
+constexpr double kPaceSpan = 60;             // seconds that the pace is taken over
+constexpr double kTurn = 0.02;               // seconds that entries are looked at before those that run are
 
 // Entries that ran, over the last while.
 class Pace {
@@ -154,9 +154,9 @@ class BatchRun {
   }
 
   // Why no file can be put there; empty where nothing is in the way.
-  static std::string obstacleAt(const fs::path& place) {
+  static std::string obstacleAt(const fs::path& location) {
     std::error_code problem;
-    const fs::file_status found = fs::symlink_status(place, problem);
+    const fs::file_status found = fs::symlink_status(location, problem);
     if (fs::is_directory(found)) return "a folder lies where the output is to be";
     return problem == std::errc::not_a_directory ? "a file lies where the output's folder is to be" : "";
   }
@@ -236,7 +236,7 @@ class BatchRun {
     Job job;
     job.folder = plan_.folder;
     job.limits = plan_.limits;
-    job.mostOutput = kMostOutput;
+    job.maxOutput = kMaxOutput;
     if (options_.outOfMemoryCode != 0) job.outOfMemoryCode = options_.outOfMemoryCode;
     job.work = [this, arguments, made = open.made(), warnings = open.warnings(), temporary = open.temporary()] {
       setenv("TMPDIR", temporary.c_str(), 1);
@@ -328,13 +328,13 @@ class BatchRun {
 
   void takeOutput(Open& open) const {
     BatchRecord& record = open.record;
-    const fs::path made = open.made(), place = folder_.root / record.output;
+    const fs::path made = open.made(), location = folder_.root / record.output;
     record.outputSha256 = sha256OfFile(made);
     record.warnings = warningsIn(open.warnings());
     std::error_code problem;
-    makeFolder(place.parent_path());
-    fs::rename(made, place, problem);
-    if (problem) failToWrite(place, problem.value());
+    makeFolder(location.parent_path());
+    fs::rename(made, location, problem);
+    if (problem) failToWrite(location, problem.value());
   }
 
   void keep(BatchRecord record) {

@@ -436,11 +436,11 @@ TEST_F(BatchRunTest, RefusesAFolderOfOtherFiles) {
   std::ofstream(output() / "diary.txt") << "mine";
   EXPECT_THROW(batchStatus(output()), Error);
   BatchOptions elsewhere = options();
-  for (const char* place : {"out", "out/diary.txt", "out/diary.txt/in"}) {
-    elsewhere.output = folder_.path() / place;
+  for (const char* location : {"out", "out/diary.txt", "out/diary.txt/in"}) {
+    elsewhere.output = folder_.path() / location;
     try {
       runBatch(plan({}), elsewhere);
-      ADD_FAILURE() << place;
+      ADD_FAILURE() << location;
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ErrorCode::kBadArgument) << error.what();
     }

@@ -75,8 +75,8 @@ BatchStatus batchStatus(const fs::path& output) {
       add(node.mapped(), folder.root, status, failures, warnings);
     }
   }
-  for (const auto& [place, record] : known) {
-    if (record.outcome == JobOutcome::kDone && isThere(folder.root / place)) status.leftOver.push_back(place);
+  for (const auto& [outputPath, record] : known) {
+    if (record.outcome == JobOutcome::kDone && isThere(folder.root / outputPath)) status.leftOver.push_back(outputPath);
   }
   for (auto& [kind, alike] : failures) status.failures.push_back(std::move(alike));
   status.warnings.assign(warnings.begin(), warnings.end());
@@ -91,8 +91,8 @@ BatchStatus batchStatus(const fs::path& output) {
 std::string mergedBatchRecords(const fs::path& output) {
   const BatchFolder folder{output};
   const PlannedOutputs planned = plannedIn(folder);
-  Warnings told;  // by batchStatus
-  const std::map<std::string, BatchRecord> known = readBatchRecords(folder.records(), told);
+  Warnings warnings;  // by batchStatus
+  const std::map<std::string, BatchRecord> known = readBatchRecords(folder.records(), warnings);
   std::string lines;
   for (std::size_t i = 0; i < planned.outputs.size(); ++i) {
     const auto found = known.find(planned.outputs[i]);

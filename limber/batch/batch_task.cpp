@@ -85,8 +85,8 @@ const BatchTask& BatchTasks::fileOf(const std::string& argument) {
   return file;
 }
 
-const std::string& PlannedOutputs::taskOf(std::size_t place) const {
-  const auto other = others.find(place);
+const std::string& PlannedOutputs::taskOf(std::size_t index) const {
+  const auto other = others.find(index);
   return other == others.end() ? task : other->second;
 }
 
@@ -104,7 +104,7 @@ PlannedOutputs plannedOutputs(const BatchPlan& plan, BatchTasks& tasks) {
 std::string plannedOutputsText(const PlannedOutputs& planned) {
   Json outputs = Json::array(), tasks = Json::array();
   for (const std::string& output : planned.outputs) outputs.push_back(output);
-  for (const auto& [place, task] : planned.others) tasks.push_back(Json::array({place, task}));
+  for (const auto& [index, task] : planned.others) tasks.push_back(Json::array({index, task}));
   Json json = {{"limber_batch", 1}, {"task", planned.task}, {"outputs", std::move(outputs)}};
   if (!tasks.empty()) json["tasks"] = std::move(tasks);
   return dumpReport(json, 0) + "\n";

@@ -50,7 +50,7 @@ struct PlannedOutputs {
   std::string task;                           // the digest of most; empty in a folder of an earlier version
   std::map<std::size_t, std::string> others;  // those of entries that differ, by their place in the order
 
-  const std::string& taskOf(std::size_t place) const;
+  const std::string& taskOf(std::size_t index) const;
 };
 
 PlannedOutputs plannedOutputs(const BatchPlan& plan, BatchTasks& tasks);

@@ -66,10 +66,10 @@ std::vector<std::string> filesMatching(const fs::path& folder, const std::string
     start /= part;
   }
   const std::string wanted = fs::path(pattern).lexically_relative(start.empty() ? "." : start).generic_string();
-  const fs::path place = folder / start;
+  const fs::path location = folder / start;
   std::vector<std::string> found;
-  for (const fs::path& file : filesBelow(place)) {
-    const fs::path below = file.lexically_relative(place);
+  for (const fs::path& file : filesBelow(location)) {
+    const fs::path below = file.lexically_relative(location);
     if (matchesPathPattern(below.generic_string(), wanted)) found.push_back((start / below).generic_string());
   }
   return found;

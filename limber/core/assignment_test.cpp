@@ -12,7 +12,7 @@ namespace limber {
 namespace {
 
 // Over all ways to pair.
-double leastSum(const std::vector<std::vector<double>>& costs) {
+double minSum(const std::vector<std::vector<double>>& costs) {
   const std::size_t rows = costs.size(), columns = costs[0].size();
   std::vector<std::size_t> order(std::max(rows, columns));
   std::iota(order.begin(), order.end(), 0);
@@ -46,7 +46,7 @@ TEST(Assignment, IsTheCheapestOfAll) {
         sum += costs[r][*pairs[r]];
         ++taken[*pairs[r]];
       }
-      EXPECT_NEAR(sum, leastSum(costs), 1e-9);
+      EXPECT_NEAR(sum, minSum(costs), 1e-9);
       EXPECT_LE(*std::max_element(taken.begin(), taken.end()), 1);
       EXPECT_EQ(std::count_if(pairs.begin(), pairs.end(), [](const auto& p) { return p.has_value(); }),
                 std::min(rows, columns));

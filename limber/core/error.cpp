@@ -42,9 +42,9 @@ Error::Error(ErrorCode code, std::string message, std::string where, std::string
 }
 
 Error Error::within(std::string_view outer) const {
-  const std::string place(outer);
-  if (place.empty() || where_ == place || where_.rfind(place + ": ", 0) == 0) return *this;
-  return Error(code_, message_, where_.empty() ? place : place + ": " + where_, remedy_);
+  const std::string location(outer);
+  if (location.empty() || where_ == location || where_.rfind(location + ": ", 0) == 0) return *this;
+  return Error(code_, message_, where_.empty() ? location : location + ": " + where_, remedy_);
 }
 
 std::string warningText(const Warning& warning) {

@@ -12,23 +12,23 @@ namespace limber {
 namespace {
 
 TEST(Progress, TellsStagesAndFractionsAndKeepsTheTimes) {
-  std::vector<std::pair<std::string, double>> told;
-  Progress progress([&](std::string_view stage, double fraction) { told.emplace_back(stage, fraction); });
+  std::vector<std::pair<std::string, double>> reported;
+  Progress progress([&](std::string_view stage, double fraction) { reported.emplace_back(stage, fraction); });
   progress.stage("weld");
   progress.update(0.5);
   progress.stage("rig");
   progress.finish();
   const std::vector<std::pair<std::string, double>> expected = {
       {"weld", 0}, {"weld", 0.5}, {"weld", 1}, {"rig", 0}, {"rig", 1}};
-  EXPECT_EQ(told, expected);
+  EXPECT_EQ(reported, expected);
   ASSERT_EQ(progress.stages().size(), 2u);
   EXPECT_EQ(progress.stages()[1].name, "rig");
   EXPECT_GE(progress.stages()[0].seconds, 0);
 }
 
 TEST(Progress, StepsLieWithinTheirStage) {
-  std::vector<std::pair<std::string, double>> told;
-  Progress progress([&](std::string_view stage, double fraction) { told.emplace_back(stage, fraction); });
+  std::vector<std::pair<std::string, double>> reported;
+  Progress progress([&](std::string_view stage, double fraction) { reported.emplace_back(stage, fraction); });
   progress.stage("skin");
   progress.step("factorise");
   progress.update(0.5);
@@ -44,7 +44,7 @@ TEST(Progress, StepsLieWithinTheirStage) {
                                                                 {"skin", 1},
                                                                 {"write", 0},
                                                                 {"write", 1}};
-  EXPECT_EQ(told, expected);
+  EXPECT_EQ(reported, expected);
   ASSERT_EQ(progress.stages().size(), 2u);
   const StageTime& skin = progress.stages()[0];
   ASSERT_EQ(skin.steps.size(), 2u);

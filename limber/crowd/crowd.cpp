@@ -30,10 +30,10 @@ namespace limber {
 
 namespace {
 
-constexpr double kMostNodes = 1e7;      // 3 GB of text
-constexpr double kRoomRound = 1.25;     // times the widest body: arms do not meet
-constexpr double kPlaceJitter = 0.15;   // of the spacing, to either side: no ranks and files
-constexpr std::size_t kMostNamed = 10;  // of what is left out
+constexpr double kMaxNodes = 1e7;         // 3 GB of text
+constexpr double kRoomRound = 1.25;       // times the widest body: arms do not meet
+constexpr double kPositionJitter = 0.15;  // of the spacing, to either side: no ranks and files
+constexpr std::size_t kMaxNamed = 10;     // of what is left out
 
 void checkOptions(std::span<const Asset> characters, std::span<const Motion> motions, const CrowdOptions& options) {
   const bool isRight = options.bodies > 0 && options.offsets > 0 && options.variety >= 0 && options.variety <= 1 &&
@@ -95,11 +95,11 @@ std::vector<bool> placedByJoints(const gltf::Document& document) {
 }
 
 // A square of rows, the first in front, the middle at the origin.
-Vec3 placeInRows(Index body, Index bodies, double spacing, double jitterX, double jitterZ) {
+Vec3 gridPosition(Index body, Index bodies, double spacing, double jitterX, double jitterZ) {
   const Index columns = static_cast<Index>(std::ceil(std::sqrt(static_cast<double>(bodies))));
   const Index rows = (bodies + columns - 1) / columns;
   const double x = body % columns - 0.5 * (columns - 1), z = 0.5 * (rows - 1) - body / columns;
-  return spacing * Vec3(x + kPlaceJitter * jitterX, 0, z + kPlaceJitter * jitterZ);
+  return spacing * Vec3(x + kPositionJitter * jitterX, 0, z + kPositionJitter * jitterZ);
 }
 
 Quat headingTurn(const CrowdBody& body) {
@@ -174,7 +174,7 @@ class CrowdWriter {
   gltf::Node rootNode(const CrowdBody& body, Index number, const std::string& clip, Index offsetFrames) const {
     gltf::Node root;
     root.name = fmt::format("body_{}", number + 1);
-    setNodeTransform(root, Eigen::Translation3d(body.place) * headingTurn(body), false);
+    setNodeTransform(root, Eigen::Translation3d(body.position) * headingTurn(body), false);
     Json extras = {{"build", body.build + 1}, {"clip", clip}, {"offset", body.offset}, {"offset_frames", offsetFrames}};
     root.extras.change()[kCrowdNote] = std::move(extras);
     return root;
@@ -332,7 +332,7 @@ Index longestCycle(const std::vector<BodyMotion>& builds, const std::vector<Crow
 void warnOfLeftOut(Warnings& warnings, std::string_view noun, std::vector<std::string> names) {
   if (names.empty()) return;
   const std::size_t count = names.size();
-  names.resize(std::min(count, kMostNamed));
+  names.resize(std::min(count, kMaxNamed));
   warnings.add(fmt::format("{}s-left-out", noun),
                fmt::format("there are fewer bodies than {}s, so {} {} no body: {}{}", noun, counted(count, noun),
                            count == 1 ? "has" : "have", fmt::join(names, ", "), count > names.size() ? ", ..." : ""));
@@ -364,7 +364,7 @@ Crowd makeCrowd(std::span<const Asset> characters, std::span<const Motion> motio
     width = std::max(width, build.width);
     lengthenClips(build, frames, options.framesPerSecond);
   }
-  if (nodes * options.bodies > kMostNodes) throw Error(ErrorCode::kLimit, "the crowd has too many bodies");
+  if (nodes * options.bodies > kMaxNodes) throw Error(ErrorCode::kLimit, "the crowd has too many bodies");
   progress.stage("crowd");
   crowd.asset = sharedOf(characters, isUsed);
   crowd.asset.name = "crowd";
@@ -382,7 +382,7 @@ Crowd makeCrowd(std::span<const Asset> characters, std::span<const Motion> motio
     body.offset = offsetFrames / options.framesPerSecond;
     const double jitterX = random.uniform(-1, 1), jitterZ = random.uniform(-1, 1);
     body.heading = options.heading * random.uniform(-1, 1);
-    body.place = placeInRows(i, options.bodies, spacing, jitterX, jitterZ) - headingTurn(body) * clip.start;
+    body.position = gridPosition(i, options.bodies, spacing, jitterX, jitterZ) - headingTurn(body) * clip.start;
     writer.add(body, i, offsetFrames, crowd.clips[body.clip]);
   }
   for (BodyMotion& build : builds) {

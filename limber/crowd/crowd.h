@@ -29,9 +29,9 @@ struct CrowdOptions {
 
 struct CrowdBody {
   Index build = 0, clip = 0;
-  double offset = 0;          // seconds of its clip at which it begins
-  Vec3 place = Vec3::Zero();  // of its build's origin, metres
-  double heading = 0;         // degrees about +Y
+  double offset = 0;             // seconds of its clip at which it begins
+  Vec3 position = Vec3::Zero();  // of its build's origin, metres
+  double heading = 0;            // degrees about +Y
 };
 
 struct Crowd {

@@ -22,7 +22,7 @@ namespace limber {
 namespace {
 
 using Rows = Eigen::Map<Eigen::Matrix<float, 3, 4, Eigen::RowMajor>>;
-constexpr std::size_t kNumbers = 12, kMostNumbers = std::size_t{1} << 30;
+constexpr std::size_t kNumbers = 12, kMaxNumbers = std::size_t{1} << 30;
 
 [[noreturn]] void failAt(const Asset& asset, Index node, const std::string& problem) {
   throw Error(ErrorCode::kBadData, problem, fmt::format("{}: nodes[{}]", asset.name, node));
@@ -79,7 +79,7 @@ class TableFiller {
   void makeRoom(Index joints) {
     table_.joints = joints;
     const std::size_t numbers = kNumbers * table_.frames * joints;
-    if (numbers > kMostNumbers) throw Error(ErrorCode::kLimit, "the crowd moves for too long", asset_.name);
+    if (numbers > kMaxNumbers) throw Error(ErrorCode::kLimit, "the crowd moves for too long", asset_.name);
     table_.matrices.assign(numbers, 0.0f);
   }
 
@@ -107,7 +107,7 @@ std::vector<CrowdMember> crowdMembers(const Asset& asset) {
       member.build = build - 1;
       member.clip = note.text("clip");
       member.offset = note.requireIndex("offset_frames", kNoIndex / 4);
-      member.place = graph->world[node];
+      member.transform = graph->world[node];
       member.node = node;
       members.push_back(std::move(member));
     } catch (const Error& error) {

@@ -11,11 +11,11 @@ namespace limber {
 
 // A body of a crowd's file.
 struct CrowdMember {
-  Index build = 0;                    // from 0; members of one build have the same surface and joints
-  std::string clip;                   // its name
-  Index offset = 0;                   // frames of its clip at which it begins
-  Affine place = Affine::Identity();  // of all of it, in the world
-  Index node = 0;                     // that it hangs on
+  Index build = 0;                        // from 0; members of one build have the same surface and joints
+  std::string clip;                       // its name
+  Index offset = 0;                       // frames of its clip at which it begins
+  Affine transform = Affine::Identity();  // of all of it, in the world
+  Index node = 0;                         // that it hangs on
 };
 
 // The members of what makeCrowd wrote, in the order of its nodes; none for any other document. Throws Error kBadData

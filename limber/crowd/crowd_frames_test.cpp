@@ -42,7 +42,7 @@ TEST(CrowdFrames, MembersAreWhatWasMade) {
     EXPECT_EQ(members[i].build, body.build);
     EXPECT_EQ(members[i].clip, crowd().clips[body.clip]);
     EXPECT_NEAR(members[i].offset / 30.0, body.offset, 1e-6);
-    EXPECT_LT((members[i].place.translation() - body.place).norm(), 1e-5);
+    EXPECT_LT((members[i].transform.translation() - body.position).norm(), 1e-5);
   }
   EXPECT_TRUE(crowdMembers(dragon()).empty());
 }

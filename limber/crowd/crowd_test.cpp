@@ -50,10 +50,10 @@ TEST(Crowd, ShowsEachBodyItsClipAtItsOffsetAndPlace) {
       const double clipMoment = std::fmod(moment + body.offset, crowd.seconds);
       if (clipMoment > crowd.seconds - 1 / options.framesPerSecond) continue;
       const std::vector<Vec3> wanted = jointsAt(alone, 0, clipMoment),
-                              places = jointsAt(crowd.asset, static_cast<Index>(i), moment);
-      ASSERT_EQ(places.size(), wanted.size());
+                              positions = jointsAt(crowd.asset, static_cast<Index>(i), moment);
+      ASSERT_EQ(positions.size(), wanted.size());
       for (std::size_t j = 0; j < wanted.size(); ++j) {
-        ASSERT_LT((places[j] - wanted[j] - body.place).norm(), 1e-4) << "body " << i << ", joint " << j;
+        ASSERT_LT((positions[j] - wanted[j] - body.position).norm(), 1e-4) << "body " << i << ", joint " << j;
       }
     }
   }
@@ -78,19 +78,19 @@ TEST(Crowd, IsTheSameForAnyNumberOfThreads) {
 }
 
 // The first frame of a motion, as often as asked.
-Motion heldPose(const Motion& motion, std::size_t frames) {
+Motion holdPose(const Motion& motion, std::size_t frames) {
   PoseSequence all = sampleFrames(motion.skeleton, motion.clips[0], 30);
   all.poses.assign(frames, all.poses.front());
-  Motion held = motion;
-  held.clips = {clipOf(motion.skeleton, all, "held")};
-  return held;
+  Motion pose = motion;
+  pose.clips = {clipOf(motion.skeleton, all, "held")};
+  return pose;
 }
 
 TEST(Crowd, TakesPosesThatAreHeld) {
   const Motion flap = makeSampleMotion("flap");
   for (const std::size_t frames : {1, 30}) {
-    const Crowd still = dragonCrowd(fewBodies(), {heldPose(flap, frames)});
-    const Crowd both = dragonCrowd(fewBodies(), {heldPose(flap, frames), flap});
+    const Crowd still = dragonCrowd(fewBodies(), {holdPose(flap, frames)});
+    const Crowd both = dragonCrowd(fewBodies(), {holdPose(flap, frames), flap});
     EXPECT_EQ(still.bodies.size(), both.bodies.size());
     EXPECT_GT(both.seconds, 0.5);
     const std::vector<Vec3> first = jointsAt(still.asset, 0, 0), last = jointsAt(still.asset, 0, still.seconds);
@@ -183,10 +183,10 @@ TEST(Crowd, StandsInItsRowsWhereverCharactersAndMotionsBegin) {
   for (Index i = 0; i < options.bodies; ++i) {
     EXPECT_EQ(plain.bodies[i].heading, moved.bodies[i].heading);
     for (const double moment : {0.0, 0.5}) {
-      const std::vector<Vec3> wanted = jointsAt(plain.asset, i, moment), places = jointsAt(moved.asset, i, moment);
+      const std::vector<Vec3> wanted = jointsAt(plain.asset, i, moment), positions = jointsAt(moved.asset, i, moment);
       for (std::size_t j = 0; j < wanted.size(); ++j) {
         // Retargeting scales how high one flies with the hips' height over the origin.
-        ASSERT_LT((places[j] - wanted[j]).norm(), 0.05) << "body " << i << ", joint " << j;
+        ASSERT_LT((positions[j] - wanted[j]).norm(), 0.05) << "body " << i << ", joint " << j;
       }
     }
   }

@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 namespace {
 
 // What is told by one key, and where it was met first, whichever thread met it first.
-struct Told {
+struct Report {
   std::size_t count = 0, first = 0;  // the number of a character
   Warning warning;
 };
@@ -33,23 +33,23 @@ struct Told {
 class Tally {
  public:
   void add(std::size_t character, const std::string& key, std::size_t count, const Warning& warning) {
-    Told& told = told_.try_emplace(key, Told{0, character, warning}).first->second;
-    told.count += count;
-    if (character >= told.first) return;
-    told.first = character;
-    told.warning = warning;
+    Report& report = reported_.try_emplace(key, Report{0, character, warning}).first->second;
+    report.count += count;
+    if (character >= report.first) return;
+    report.first = character;
+    report.warning = warning;
   }
 
   // By the characters that met them first.
-  std::vector<std::pair<std::string, Told>> inOrder() const {
-    std::vector<std::pair<std::string, Told>> all(told_.begin(), told_.end());
+  std::vector<std::pair<std::string, Report>> inOrder() const {
+    std::vector<std::pair<std::string, Report>> all(reported_.begin(), reported_.end());
     std::stable_sort(all.begin(), all.end(),
                      [](const auto& a, const auto& b) { return a.second.first < b.second.first; });
     return all;
   }
 
  private:
-  std::map<std::string, Told> told_;
+  std::map<std::string, Report> reported_;
 };
 
 // The message without the place, by which failures of one kind are told together.
@@ -71,11 +71,11 @@ class CharactersRun {
       for (std::size_t c = begin; c < end; ++c) doCharacter(c);
     });
     report_.matches = matches_.made();
-    for (const auto& [problem, told] : failures_.inOrder()) {
-      report_.failures.push_back({problem, told.count, job_.characters[told.first]});
+    for (const auto& [problem, report] : failures_.inOrder()) {
+      report_.failures.push_back({problem, report.count, job_.characters[report.first]});
     }
-    for (const auto& [kind, told] : warnings_.inOrder()) {
-      report_.warnings.add(kind, told.warning.message, told.warning.where, told.count);
+    for (const auto& [kind, report] : warnings_.inOrder()) {
+      report_.warnings.add(kind, report.warning.message, report.warning.where, report.count);
     }
     return std::move(report_);
   }

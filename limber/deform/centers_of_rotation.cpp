@@ -43,7 +43,7 @@ std::shared_ptr<const DeformRows> centersOfRotationRows(const BoundSurface& surf
   for (Index v = 0; v < surface.positions.size(); ++v) {
     const Vec3f& center = prepared->centers[v];
     rows->rowOf.push_back(v);
-    rows->places.insert(rows->places.end(), {center.x(), center.y(), center.z(), 0.0f});
+    rows->positions.insert(rows->positions.end(), {center.x(), center.y(), center.z(), 0.0f});
     addInfluences(surface.weights, v, center, *rows);
     rows->begin.push_back(static_cast<Index>(rows->joints.size() / 4));
   }

@@ -35,7 +35,7 @@ struct DeformJob {
   const std::uint32_t* rowBegin = nullptr;   // #R + 1
   const std::uint32_t* rowJoints = nullptr;  // #E * 4; in full #E
   const float* rowMoments = nullptr;         // #E * kFloatsPerMoments
-  const float* rowPlaces = nullptr;          // #R * 4
+  const float* rowPositions = nullptr;       // #R * 4
   // In full only: the rotations alone, where columns are the maps; what the entries add to.
   const float* turns = nullptr;     // #J * kFloatsPerColumns
   const float* rowBases = nullptr;  // #R * kFloatsPerMoments

@@ -358,14 +358,15 @@ LIMBER_INLINE RowSum sumRow(const DeformJob& job, std::size_t row) {
 template <bool kNormals, bool kScales>
 LIMBER_INLINE void directBlock(const DeformJob& job, std::size_t v) {
   RowSum sums[4];
-  Float4 places[4];
+  Float4 rowPosition[4];
   for (int i = 0; i < 4; ++i) {
     const std::size_t row = job.rowOf[v + i];
     sums[i] = sumRow<kScales>(job, row);
-    places[i] = loadFloat4(job.rowPlaces + 4 * row);
+    rowPosition[i] = loadFloat4(job.rowPositions + 4 * row);
   }
   const Lanes3 positions = loadLanes3(job.positions + 3 * v);
-  Lanes3 arm = positions - xyzOf(transposed(places[0], places[1], places[2], places[3])), normals = {};
+  Lanes3 arm = positions - xyzOf(transposed(rowPosition[0], rowPosition[1], rowPosition[2], rowPosition[3])),
+         normals = {};
   Lanes3 shift = xyzOf(transposed(sums[0].shift, sums[1].shift, sums[2].shift, sums[3].shift));
   if (kNormals) normals = loadLanes3(job.normals + 3 * v);
   if (kScales) {
@@ -515,10 +516,10 @@ using DeformBlock = void (*)(const DeformJob& job, std::size_t v);
 // The last one to three vertices, as a block with copies of the last.
 template <DeformBlock kBlock>
 void deformRest(const DeformJob& job, std::size_t begin, std::size_t end) {
-  constexpr std::uint32_t kMostSlots = 8;
+  constexpr std::uint32_t kMaxSlots = 8;
   float positions[12] = {}, normals[12] = {}, centers[12] = {}, outPositions[12], outNormals[12],
-        weights[4 * kMostSlots] = {};
-  std::uint32_t joints[4 * kMostSlots] = {}, rows[4] = {};
+        weights[4 * kMaxSlots] = {};
+  std::uint32_t joints[4 * kMaxSlots] = {}, rows[4] = {};
   const std::size_t count = end - begin;
   for (std::size_t i = 0; i < 3 * count; ++i) positions[i] = job.positions[3 * begin + i];
   for (std::size_t i = 0; i < 3 * count && job.normals; ++i) normals[i] = job.normals[3 * begin + i];

@@ -69,8 +69,8 @@ struct DeformRows {
   std::vector<Index> begin;   // #R + 1, into the entries
   std::vector<Index> joints;  // #E * 4, strongest first
   std::vector<float>
-      moments;                // #E * 16: of four joints the x of m_j, then the y, z and w_j; zero where there are fewer
-  std::vector<float> places;  // #R * 4: p
+      moments;  // #E * 16: of four joints the x of m_j, then the y, z and w_j; zero where there are fewer
+  std::vector<float> positions;  // #R * 4: p
 };
 
 // preparation  what `prepare` gave for that surface

@@ -59,7 +59,7 @@ class RandomValues {
  public:
   double in(double low, double high) { return std::uniform_real_distribution<double>(low, high)(generator_); }
   Vec3 vector() { return {in(-1, 1), in(-1, 1), in(-1, 1)}; }
-  Quat rotation(double mostAngle) { return Quat(Eigen::AngleAxisd(in(-mostAngle, mostAngle), vector().normalized())); }
+  Quat rotation(double maxAngle) { return Quat(Eigen::AngleAxisd(in(-maxAngle, maxAngle), vector().normalized())); }
   Index below(Index count) { return static_cast<Index>(generator_() % count); }
 
  private:
@@ -394,9 +394,9 @@ Vec3 rowsOracle(const DeformRows& rows, std::span<const Vec3f> positions, std::s
   const Vec3 position = positions[v].cast<double>();
   const Index row = rows.rowOf[v];
   if (rows.begin[row] == rows.begin[row + 1]) return position;
-  const float* at = rows.places.data() + 4 * std::size_t{row};
-  const Vec3 place(at[0], at[1], at[2]);
-  Vec3 sum = place;
+  const float* at = rows.positions.data() + 4 * std::size_t{row};
+  const Vec3 point(at[0], at[1], at[2]);
+  Vec3 sum = point;
   Mat3 stretch = Mat3::Zero();
   Vec4 turn = Vec4::Zero();
   std::optional<Quat> pivot;
@@ -418,7 +418,7 @@ Vec3 rowsOracle(const DeformRows& rows, std::span<const Vec3f> positions, std::s
     }
   }
   EXPECT_NEAR(total, 1, 1e-4) << v;
-  return sum + Quat(turn).normalized() * (Vec3((Mat3::Identity() + stretch) * (position - place)));
+  return sum + Quat(turn).normalized() * (Vec3((Mat3::Identity() + stretch) * (position - point)));
 }
 
 TEST_P(EveryDeformer, ItsRowsMoveVerticesAsItDoes) {

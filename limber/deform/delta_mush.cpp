@@ -171,7 +171,7 @@ void connectNeighbours(const SmoothingSurface& smooth, DeltaMushSurface& surface
 
 std::shared_ptr<const DeltaMushSurface> deltaMushSurface(const BoundSurface& surface, Index jointCount,
                                                          const DeltaMushOptions& options) {
-  if (!(options.reach > 0) || !(options.step > 0) || options.step > 1 || options.mostSmoothings < 1) {
+  if (!(options.reach > 0) || !(options.step > 0) || options.step > 1 || options.maxSmoothings < 1) {
     throw Error(ErrorCode::kBadArgument, "an option of delta mush is out of its range");
   }
   SmoothingSurface smooth = smoothingSurface(surface);
@@ -179,7 +179,7 @@ std::shared_ptr<const DeltaMushSurface> deltaMushSurface(const BoundSurface& sur
   connectNeighbours(smooth, *result);
   result->step = static_cast<float>(options.step);
   const double wanted = std::ceil(smooth.stepsFor(options.reach) / options.step);
-  result->smoothings = static_cast<int>(std::min<double>(wanted, options.mostSmoothings));
+  result->smoothings = static_cast<int>(std::min<double>(wanted, options.maxSmoothings));
   result->jointCount = jointCount;
   result->weldedVertex = std::move(smooth.weldedVertex);
   result->positions = std::move(smooth.positions);

@@ -8,9 +8,9 @@
 namespace limber {
 
 struct DeltaMushOptions {
-  double reach = 0.025;      // root mean square distance of smoothing, in longest sides of the model
-  double step = 0.5;         // of each of the smoothings, in (0, 1]: how far a vertex goes to its neighbours' mean
-  int mostSmoothings = 100;  // where the surface is so fine that the reach takes more, it is smoothed less
+  double reach = 0.025;     // root mean square distance of smoothing, in longest sides of the model
+  double step = 0.5;        // of each of the smoothings, in (0, 1]: how far a vertex goes to its neighbours' mean
+  int maxSmoothings = 100;  // where the surface is so fine that the reach takes more, it is smoothed less
 };
 
 // The welded surface (SmoothingSurface), its neighbourhoods, and what smoothing takes from it at rest.

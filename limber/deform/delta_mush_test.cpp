@@ -75,7 +75,7 @@ TEST(DeltaMush, RefusesOptionsOutOfRange) {
   DeltaMushOptions reach, step, smoothings;
   reach.reach = -1;
   step.step = 1.5;
-  smoothings.mostSmoothings = 0;
+  smoothings.maxSmoothings = 0;
   for (const DeltaMushOptions& wrong : {reach, step, smoothings}) {
     EXPECT_THROW(deltaMushSurface(bound.surface(), 2, wrong), Error);
   }
@@ -86,7 +86,7 @@ class EveryMush : public ::testing::TestWithParam<std::string_view> {};
 std::shared_ptr<const DeformPreparation> preparedWith(std::string_view name, const BoundMesh& bound, double reach) {
   DeltaMushOptions mush;
   mush.reach = reach;
-  mush.mostSmoothings = 1000;
+  mush.maxSmoothings = 1000;
   DirectDeltaMushOptions direct;
   direct.rotationReach = direct.translationReach = reach;
   if (name == "delta-mush") return deltaMushSurface(bound.surface(), bound.jointCount(), mush);
@@ -123,7 +123,7 @@ TEST_P(EveryMush, JointKeepsItsWidthBetterThanWithLinearBlend) {
 // Whatever the weights: where they jump from one joint to the next, the surface bends over a distance.
 TEST_P(EveryMush, NoEdgeIsTornAtAHardBoundary) {
   const BoundMesh bound = bentTube(24, 81, 0, Quat(Eigen::AngleAxisd(1.5, Vec3::UnitZ())));
-  const auto mostStretched = [&](const std::vector<Vec3f>& positions) {
+  const auto maxStretched = [&](const std::vector<Vec3f>& positions) {
     float most = 0;
     for (const Triangle& t : bound.mesh.triangles) {
       const float before = (bound.mesh.positions[t[0]] - bound.mesh.positions[t[2]]).norm();
@@ -132,8 +132,8 @@ TEST_P(EveryMush, NoEdgeIsTornAtAHardBoundary) {
     return most;
   };
   const auto prepared = preparedWith(GetParam(), bound, 0.1);
-  EXPECT_LT(mostStretched(bound.deformed(findDeformer(GetParam()), prepared.get())),
-            0.5f * mostStretched(bound.deformed("linear-blend")));
+  EXPECT_LT(maxStretched(bound.deformed(findDeformer(GetParam()), prepared.get())),
+            0.5f * maxStretched(bound.deformed("linear-blend")));
 }
 
 TEST_P(EveryMush, FinenessOfTheTrianglesHardlyMatters) {

@@ -19,7 +19,7 @@ namespace {
 // surface is known. Small against what a bend does to it.
 constexpr double kRoundness = 1e-3;
 // The same where all surroundings lie at one place, in squared longest sides.
-constexpr double kLeastRoundness = 1e-12;
+constexpr double kMinRoundness = 1e-12;
 
 // Moments of weighted points up to the second order.
 struct PointMoments {
@@ -77,7 +77,7 @@ class MomentTable {
         translation_(surface, surface.stepsFor(options.translationReach) / options.smoothings, options.smoothings),
         boundTo_(jointCount) {
     gatherWeights();
-    makePlaces();
+    makePositions();
   }
 
   // Calls addRow(vertex, parts, whole) of each vertex in order: its joints' parts, strongest first, and the moments of
@@ -99,7 +99,7 @@ class MomentTable {
     }
   }
 
-  const Vec3& place(Index vertex) const { return places_[vertex]; }
+  const Vec3& smoothedPosition(Index vertex) const { return positions_[vertex]; }
   Index jointCount() const { return static_cast<Index>(boundTo_.size()); }
 
  private:
@@ -120,17 +120,17 @@ class MomentTable {
   Vec3 position(Index vertex) const { return surface_.positions[vertex].cast<double>(); }
 
   // p = B u.
-  void makePlaces() {
+  void makePositions() {
     std::vector<double> x(std::size_t{ImplicitSmoother::kColumns} * surface_.vertexCount());
     for (Index v = 0; v < surface_.vertexCount(); ++v) {
-      for (int i = 0; i < 3; ++i) x[rotation_.place(v) + i] = position(v)[i];
+      for (int i = 0; i < 3; ++i) x[rotation_.rowOf(v) + i] = position(v)[i];
     }
     rotation_.smooth(x, 3);
     for (Index v = 0; v < surface_.vertexCount(); ++v) {
-      const double* at = x.data() + rotation_.place(v);
-      Vec3 place(at[0], at[1], at[2]);
+      const double* at = x.data() + rotation_.rowOf(v);
+      Vec3 point(at[0], at[1], at[2]);
       const bool alone = surface_.stiffness.coeff(v, v) == 0;
-      places_.push_back(alone || !place.allFinite() ? position(v) : place);
+      positions_.push_back(alone || !point.allFinite() ? position(v) : point);
     }
   }
 
@@ -143,10 +143,10 @@ class MomentTable {
     std::vector<double> lower(size, 0.0), upper(size, 0.0), translation(size, 0.0);
     for (const VertexWeight& w : weights) {
       const Vec3 arm = position(w.vertex) - middle;
-      double* low = lower.data() + rotation_.place(w.vertex);
-      double* high = upper.data() + rotation_.place(w.vertex);
+      double* low = lower.data() + rotation_.rowOf(w.vertex);
+      double* high = upper.data() + rotation_.rowOf(w.vertex);
       low[0] += w.weight;
-      translation[translation_.place(w.vertex)] += w.weight;
+      translation[translation_.rowOf(w.vertex)] += w.weight;
       for (int i = 0; i < 3; ++i) {
         low[1 + i] += w.weight * arm[i];
         low[4 + i] += w.weight * arm[i] * arm[i];
@@ -158,12 +158,12 @@ class MomentTable {
     translation_.smooth(translation, 1);
     std::vector<PointMoments> result;
     for (Index v = 0; v < surface_.vertexCount(); ++v) {
-      const double* low = lower.data() + rotation_.place(v);
-      const double* high = upper.data() + rotation_.place(v);
+      const double* low = lower.data() + rotation_.rowOf(v);
+      const double* high = upper.data() + rotation_.rowOf(v);
       PointMoments m = {low[0], {low[1], low[2], low[3]}, Mat3::Zero()};
       m.second << low[4], high[0], high[2], high[0], low[5], high[1], high[2], high[1], low[6];
-      m = (1 - options_.translationWeight) * about(m, places_[v] - middle);
-      m.weight += options_.translationWeight * translation[translation_.place(v)];
+      m = (1 - options_.translationWeight) * about(m, positions_[v] - middle);
+      m.weight += options_.translationWeight * translation[translation_.rowOf(v)];
       if (surface_.stiffness.coeff(v, v) == 0 || !m.isFinite()) m = {low[0], Vec3::Zero(), Mat3::Zero()};
       result.push_back(m);
     }
@@ -174,19 +174,19 @@ class MomentTable {
     std::vector<JointPart> parts;
     const std::vector<PointMoments> moments = momentsOf(boundTo_[joint]);
     for (Index v = 0; v < moments.size(); ++v) {
-      if (moments[v].weight >= options_.leastWeight) parts.push_back({v, joint, moments[v]});
+      if (moments[v].weight >= options_.minWeight) parts.push_back({v, joint, moments[v]});
     }
     return parts;
   }
 
   // Strongest first; a whole entry of four is left out where it costs more than it changes.
   void dropWeakest(std::vector<JointPart>& parts) const {
-    if (parts.size() > options_.mostJoints) parts.resize(options_.mostJoints);
+    if (parts.size() > options_.maxJoints) parts.resize(options_.maxJoints);
     while (parts.size() > 4) {
       const std::size_t first = (parts.size() - 1) / 4 * 4;
-      double held = 0;
-      for (std::size_t i = first; i < parts.size(); ++i) held += parts[i].moments.weight;
-      if (held >= options_.leastEntry) return;
+      double totalWeight = 0;
+      for (std::size_t i = first; i < parts.size(); ++i) totalWeight += parts[i].moments.weight;
+      if (totalWeight >= options_.minEntry) return;
       parts.resize(first);
     }
   }
@@ -220,7 +220,7 @@ class MomentTable {
   ImplicitSmoother rotation_, translation_;
   std::vector<std::vector<VertexWeight>> boundTo_;  // by joint
   std::vector<VertexWeight> everything_, bound_;
-  std::vector<Vec3> places_;
+  std::vector<Vec3> positions_;
 };
 
 void addMatrix(const PointMoments& m, std::vector<float>& to) {
@@ -232,17 +232,17 @@ void addMatrix(const PointMoments& m, std::vector<float>& to) {
   to.push_back(static_cast<float>(m.weight));
 }
 
-void addBase(const Mat3& second, const Vec3& place, std::vector<float>& to) {
+void addBase(const Mat3& second, const Vec3& position, std::vector<float>& to) {
   for (int column = 0; column < 3; ++column) {
     for (int row = 0; row < 3; ++row) to.push_back(static_cast<float>(second(row, column)));
     to.push_back(0);
   }
-  for (int i = 0; i < 3; ++i) to.push_back(static_cast<float>(place[i]));
+  for (int i = 0; i < 3; ++i) to.push_back(static_cast<float>(position[i]));
   to.push_back(static_cast<float>(1 / second.trace()));
 }
 
 // Four joints from `first` on.
-void addEntry(const std::vector<JointPart>& parts, std::size_t first, const Vec3& place, DirectDeltaMushRows& rows) {
+void addEntry(const std::vector<JointPart>& parts, std::size_t first, const Vec3& position, DirectDeltaMushRows& rows) {
   const std::size_t begin = rows.moments.size();
   rows.moments.resize(begin + kFloatsPerMoments, 0.0f);
   for (std::size_t i = 0; i < 4; ++i) {
@@ -250,7 +250,7 @@ void addEntry(const std::vector<JointPart>& parts, std::size_t first, const Vec3
     rows.joints.push_back(there ? parts[first + i].joint : parts.front().joint);
     if (!there) continue;
     const PointMoments& moments = parts[first + i].moments;
-    const Vec3 sum = moments.first + moments.weight * place;
+    const Vec3 sum = moments.first + moments.weight * position;
     for (std::size_t axis = 0; axis < 3; ++axis) rows.moments[begin + 4 * axis + i] = static_cast<float>(sum[axis]);
     rows.moments[begin + 12 + i] = static_cast<float>(moments.weight);
   }
@@ -278,9 +278,9 @@ std::shared_ptr<Rows> emptyRows(const SmoothingSurface& surface, const MomentTab
 
 void checkOptions(const DirectDeltaMushOptions& options) {
   const bool right = options.rotationReach > 0 && options.translationReach > 0 && options.smoothings > 0 &&
-                     options.translationWeight >= 0 && options.translationWeight < 1 && options.leastWeight >= 0 &&
-                     options.leastWeight <= 0.1 && options.mostJoints > 0 && options.leastEntry >= 0 &&
-                     options.leastEntry <= 0.5;
+                     options.translationWeight >= 0 && options.translationWeight < 1 && options.minWeight >= 0 &&
+                     options.minWeight <= 0.1 && options.maxJoints > 0 && options.minEntry >= 0 &&
+                     options.minEntry <= 0.5;
   if (!right) throw Error(ErrorCode::kBadArgument, "an option of direct delta mush is out of its range");
 }
 
@@ -304,11 +304,11 @@ std::shared_ptr<const DirectDeltaMushRows> directDeltaMushRows(const BoundSurfac
   const MomentTable table(smooth, jointCount, options, MomentOrder::kFirst);
   auto rows = emptyRows<DirectDeltaMushRows>(smooth, table);
   table.forEachRow([&](Index v, const std::vector<JointPart>& parts, const PointMoments&) {
-    const Vec3& place = table.place(v);
-    for (std::size_t first = 0; first < parts.size(); first += 4) addEntry(parts, first, place, *rows);
+    const Vec3& position = table.smoothedPosition(v);
+    for (std::size_t first = 0; first < parts.size(); first += 4) addEntry(parts, first, position, *rows);
     rows->begin.push_back(static_cast<Index>(rows->joints.size() / 4));
-    for (int axis = 0; axis < 3; ++axis) rows->places.push_back(static_cast<float>(place[axis]));
-    rows->places.push_back(0);
+    for (int axis = 0; axis < 3; ++axis) rows->positions.push_back(static_cast<float>(position[axis]));
+    rows->positions.push_back(0);
   });
   return rows;
 }
@@ -321,7 +321,7 @@ std::shared_ptr<const FullDirectDeltaMushRows> fullDirectDeltaMushRows(const Bou
   auto rows = emptyRows<FullDirectDeltaMushRows>(smooth, table);
   table.forEachRow([&](Index v, std::vector<JointPart>& parts, PointMoments whole) {
     const double round =
-        kRoundness / 3 * whole.second.trace() + kLeastRoundness * smooth.longestSide * smooth.longestSide;
+        kRoundness / 3 * whole.second.trace() + kMinRoundness * smooth.longestSide * smooth.longestSide;
     for (JointPart& part : parts) {
       part.moments.second.diagonal().array() += round * part.moments.weight;
       rows->joints.push_back(part.joint);
@@ -329,7 +329,7 @@ std::shared_ptr<const FullDirectDeltaMushRows> fullDirectDeltaMushRows(const Bou
     }
     rows->begin.push_back(static_cast<Index>(rows->joints.size()));
     whole.second.diagonal().array() += round;
-    addBase(whole.second, table.place(v), rows->bases);
+    addBase(whole.second, table.smoothedPosition(v), rows->bases);
   });
   return rows;
 }
@@ -367,7 +367,7 @@ void directDeltaMush(const DeformInput& input, const DeformOutput& output, std::
   job.columns = columns;
   job.stretches = stretches;
   job.motions = motions;
-  job.rowPlaces = rows.places.data();
+  job.rowPositions = rows.positions.data();
   runDeformJob(directKernels().direct[job.outNormals != nullptr][stretched], job, input.positions.size());
 }
 

@@ -17,15 +17,15 @@ struct DirectDeltaMushOptions {
   int smoothings = 2;              // p; more make the reach end sooner
   // Of a joint's share in a vertex; less is given to the others. On people the mean distance of directDeltaMush from
   // the full one grows by 4 to 7 % with 1 / 96 against 1 / 256, by 12 to 21 % with 1 / 48.
-  double leastWeight = 1.0 / 64;
+  double minWeight = 1.0 / 64;
   // Of a vertex, the strongest; what the rest had is given to them. Not in full. With 8 the mean distance from the full
   // one is at most 4 % above that with all joints, with 6 20 %, with 4 75 % (a person of 163 joints).
-  Index mostJoints = 8;
+  Index maxJoints = 8;
   // Of the joints in an entry of four behind the first, together; where they hold less, it is given to the others. Not
   // in full. With 1 / 32 against 0 the mean distance from the full one grows by 1 % on 25 artists' creatures, by 4 %
   // with 1 / 8; on the bench's creature 95 of 100 vertices lie within 1.88 thousandths of the longest side
   // against 1.72, and a frame takes 1.99 times that of dual quaternions against 2.07 (mostJoints = 4: 2.16 and 1.94).
-  double leastEntry = 1.0 / 32;
+  double minEntry = 1.0 / 32;
 };
 
 // One row of moments for each vertex of the welded surface, with an entry for each joint that its surroundings are

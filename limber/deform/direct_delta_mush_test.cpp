@@ -95,10 +95,10 @@ std::vector<Vec3> byThePaper(const BoundMesh& bound, const DirectDeltaMushOption
       sum += bound.transforms[j].matrix() * omega;
       turn += omega(3, 3) * Quat(bound.transforms[j].linear()).coeffs();
     }
-    const Vec3 q = sum.block<3, 1>(0, 3), place = p.row(i).head<3>().transpose();
-    const Mat3 rotation = by == RotationBy::kFit ? fittedRotation(sum.topLeftCorner<3, 3>() - q * place.transpose())
+    const Vec3 q = sum.block<3, 1>(0, 3), position = p.row(i).head<3>().transpose();
+    const Mat3 rotation = by == RotationBy::kFit ? fittedRotation(sum.topLeftCorner<3, 3>() - q * position.transpose())
                                                  : Quat(turn).normalized().toRotationMatrix();
-    result.push_back(rotation * (u.row(i).head<3>().transpose() - place) + q);
+    result.push_back(rotation * (u.row(i).head<3>().transpose() - position) + q);
   }
   return result;
 }
@@ -119,7 +119,7 @@ TEST(DirectDeltaMush, IsThePapersFormula) {
       DirectDeltaMushOptions options;
       options.translationWeight = alpha;
       options.smoothings = smoothings;
-      options.leastWeight = 0;
+      options.minWeight = 0;
       EXPECT_LT(farthest(inFull(bound, options), byThePaper(bound, options, RotationBy::kFit)), 1e-4)
           << alpha << " " << smoothings;
       EXPECT_LT(farthest(directly(bound, options), byThePaper(bound, options, RotationBy::kBlendedQuaternions)), 1e-5)
@@ -131,7 +131,7 @@ TEST(DirectDeltaMush, IsThePapersFormula) {
 TEST(DirectDeltaMush, SmallWeightsThatAreLeftOutShowLittle) {
   const BoundMesh bound = bentTube(10, 21, 0.2, bendBy(1.4));
   DirectDeltaMushOptions options;
-  options.leastWeight = 1.0 / 256;
+  options.minWeight = 1.0 / 256;
   EXPECT_LT(farthest(inFull(bound, options), byThePaper(bound, {}, RotationBy::kFit)), 3e-3);
   EXPECT_LT(farthest(directly(bound, options), byThePaper(bound, {}, RotationBy::kBlendedQuaternions)), 3e-3);
 }
@@ -168,7 +168,7 @@ TEST(DirectDeltaMush, KeepsTheStrongestJoints) {
   const auto all = directDeltaMushRows(bound.surface(), bound.jointCount());
   for (const Index most : {1u, 2u, 3u}) {
     DirectDeltaMushOptions options;
-    options.mostJoints = most;
+    options.maxJoints = most;
     const auto rows = directDeltaMushRows(bound.surface(), bound.jointCount(), options);
     ASSERT_EQ(rows->begin.size(), all->begin.size());
     for (std::size_t r = 0; r + 1 < rows->begin.size(); ++r) {
@@ -222,7 +222,7 @@ TEST(DirectDeltaMush, EveryBuildOfTheInnerLoopGivesTheSameBits) {
     job.rowBegin = rows->begin.data();
     job.rowJoints = rows->joints.data();
     job.rowMoments = rows->moments.data();
-    job.rowPlaces = rows->places.data();
+    job.rowPositions = rows->positions.data();
     kernels.direct[normals][scales](job, 0, count);
     return out;
   };
@@ -254,10 +254,10 @@ BoundMesh manyJointedTube() {
 std::size_t keptOf(const std::vector<RowPart>& parts, double least) {
   std::size_t count = parts.size();
   while (count > 4) {
-    double held = 0;
+    double total = 0;
     const std::size_t first = (count - 1) / 4 * 4;
-    for (std::size_t i = first; i < count; ++i) held += static_cast<double>(parts[i].weight);
-    if (held >= least) break;
+    for (std::size_t i = first; i < count; ++i) total += static_cast<double>(parts[i].weight);
+    if (total >= least) break;
     count = first;
   }
   return count;
@@ -266,13 +266,13 @@ std::size_t keptOf(const std::vector<RowPart>& parts, double least) {
 TEST(DirectDeltaMush, AnEntryIsKeptWhereItsJointsHoldEnoughTogether) {
   const BoundMesh bound = manyJointedTube();
   DirectDeltaMushOptions options;
-  options.leastEntry = 0;
-  options.leastWeight = 1e-6;
-  options.mostJoints = 21;
+  options.minEntry = 0;
+  options.minWeight = 1e-6;
+  options.maxJoints = 21;
   const auto all = directDeltaMushRows(bound.surface(), bound.jointCount(), options);
   std::size_t before = all->joints.size();
   for (const double least : {0.005, 0.02, 0.5}) {
-    options.leastEntry = least;
+    options.minEntry = least;
     const auto rows = directDeltaMushRows(bound.surface(), bound.jointCount(), options);
     EXPECT_LE(rows->joints.size(), before) << least;
     before = rows->joints.size();
@@ -299,8 +299,8 @@ TEST(DirectDeltaMush, RefusesOptionsOutOfRange) {
   alpha.translationWeight = 1;
   reach.rotationReach = 0;
   times.smoothings = 0;
-  joints.mostJoints = 0;
-  entry.leastEntry = -0.1;
+  joints.maxJoints = 0;
+  entry.minEntry = -0.1;
   for (const DirectDeltaMushOptions& wrong : {alpha, reach, times, joints, entry}) {
     EXPECT_THROW(directDeltaMushRows(bound.surface(), 2, wrong), Error);
   }

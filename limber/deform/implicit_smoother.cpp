@@ -21,7 +21,7 @@ ImplicitSmoother::ImplicitSmoother(const SmoothingSurface& surface, double lambd
 void ImplicitSmoother::smooth(std::vector<double>& x, int columns) const {
   for (int i = 0; i < times_; ++i) {
     for (Index v = 0; v < surface_.vertexCount(); ++v) {
-      for (int column = 0; column < columns; ++column) x[place(v) + column] *= surface_.diagonal[v];
+      for (int column = 0; column < columns; ++column) x[rowOf(v) + column] *= surface_.diagonal[v];
     }
     cholesky_.solve(x.data(), columns);
   }

@@ -19,7 +19,7 @@ class ImplicitSmoother {
 
   // x: #S rows of kColumns, that of a vertex at place(vertex); the first `columns` are smoothed.
   void smooth(std::vector<double>& x, int columns) const;
-  std::size_t place(Index vertex) const { return std::size_t{kColumns} * cholesky_.place(vertex); }
+  std::size_t rowOf(Index vertex) const { return std::size_t{kColumns} * cholesky_.rowOf(vertex); }
 
  private:
   const SmoothingSurface& surface_;

@@ -38,9 +38,9 @@ void addWeight(Binding& binding, Index joint, double weight) {
   }
 }
 
-void addVertex(Binding& binding, const SkinWeights& weights, Index vertex, double share) {
+void addVertex(Binding& binding, const SkinWeights& weights, Index vertex, double fraction) {
   for (Index slot = 0; slot < weights.slots; ++slot) {
-    addWeight(binding, weights.jointsOf(vertex)[slot], share * static_cast<double>(weights.weightsOf(vertex)[slot]));
+    addWeight(binding, weights.jointsOf(vertex)[slot], fraction * static_cast<double>(weights.weightsOf(vertex)[slot]));
   }
 }
 

@@ -29,16 +29,17 @@ double commonWeight(const SkinWeights& weights, Index a, Index b) {
 }
 
 // Welds by binding what `place` has at one place; returns the first vertex of each welded one.
-std::vector<Index> weldAlike(const std::vector<Index>& place, const SkinWeights& weights, std::vector<Index>& welded) {
-  std::vector<Index> representatives, next, head(place.size(), kNoIndex);
-  for (Index v = 0; v < place.size(); ++v) {
-    Index found = head[place[v]];
+std::vector<Index> weldAlike(const std::vector<Index>& indices, const SkinWeights& weights,
+                             std::vector<Index>& welded) {
+  std::vector<Index> representatives, next, head(indices.size(), kNoIndex);
+  for (Index v = 0; v < indices.size(); ++v) {
+    Index found = head[indices[v]];
     while (found != kNoIndex && commonWeight(weights, representatives[found], v) < kAlike) found = next[found];
     if (found == kNoIndex) {
       found = static_cast<Index>(representatives.size());
       representatives.push_back(v);
-      next.push_back(head[place[v]]);
-      head[place[v]] = found;
+      next.push_back(head[indices[v]]);
+      head[indices[v]] = found;
     }
     welded.push_back(found);
   }
@@ -57,9 +58,9 @@ void connect(const BoundSurface& surface, const std::vector<Index>& representati
   TriMesh mesh;
   for (const Index v : representatives) mesh.positions.push_back(prepared.mesh.positions[prepared.weldedVertex[v]]);
   for (const Triangle& source : surface.triangles) {
-    const Triangle place = {prepared.weldedVertex[source[0]], prepared.weldedVertex[source[1]],
-                            prepared.weldedVertex[source[2]]};
-    if (place[0] == place[1] || place[1] == place[2] || place[2] == place[0]) continue;
+    const Triangle welded = {prepared.weldedVertex[source[0]], prepared.weldedVertex[source[1]],
+                             prepared.weldedVertex[source[2]]};
+    if (welded[0] == welded[1] || welded[1] == welded[2] || welded[2] == welded[0]) continue;
     mesh.triangles.push_back(
         {result.weldedVertex[source[0]], result.weldedVertex[source[1]], result.weldedVertex[source[2]]});
   }
@@ -97,13 +98,13 @@ SmoothingSurface smoothingSurface(const BoundSurface& surface) {
   SmoothingSurface result;
   const bool connected = hasTriangle(surface);
   PreparedMesh prepared;
-  std::vector<Index> place(surface.positions.size());
-  std::iota(place.begin(), place.end(), Index{0});
+  std::vector<Index> indices(surface.positions.size());
+  std::iota(indices.begin(), indices.end(), Index{0});
   if (connected) {
     prepared = prepareMesh(surface.positions, surface.triangles);
-    place = prepared.weldedVertex;
+    indices = prepared.weldedVertex;
   }
-  const std::vector<Index> representatives = weldAlike(place, surface.weights, result.weldedVertex);
+  const std::vector<Index> representatives = weldAlike(indices, surface.weights, result.weldedVertex);
   const int count = static_cast<int>(representatives.size());
   result.weights.slots = surface.weights.slots;
   for (const Index v : representatives) {

@@ -69,14 +69,14 @@ TEST(ImplicitSmoother, IsTheDensePower) {
   std::vector<double> x(static_cast<std::size_t>(count) * ImplicitSmoother::kColumns);
   for (Index v = 0; v < count; ++v) {
     wanted.row(v) << v % 7, 1;
-    x[smoother.place(v)] = v % 7;
-    x[smoother.place(v) + 1] = 1;
+    x[smoother.rowOf(v)] = v % 7;
+    x[smoother.rowOf(v) + 1] = 1;
   }
   for (int i = 0; i < kTimes; ++i) wanted = once.fullPivLu().solve(wanted).eval();
   smoother.smooth(x, 2);
   for (Index v = 0; v < count; ++v) {
-    EXPECT_NEAR(x[smoother.place(v)], wanted(v, 0), 1e-9) << v;
-    EXPECT_NEAR(x[smoother.place(v) + 1], 1, 1e-12) << v;
+    EXPECT_NEAR(x[smoother.rowOf(v)], wanted(v, 0), 1e-9) << v;
+    EXPECT_NEAR(x[smoother.rowOf(v) + 1], 1, 1e-12) << v;
   }
 }
 

@@ -114,13 +114,13 @@ TEST(HostileJson, EveryValueReplaced) {
   const Json flat = model.json.flatten();
   for (const auto& [pointer, leaf] : flat.items()) {
     // The leaf itself and what it lies in.
-    for (Json::json_pointer place(pointer); !place.empty(); place = place.parent_pointer()) {
+    for (Json::json_pointer location(pointer); !location.empty(); location = location.parent_pointer()) {
       for (const Json& value : values) {
         GltfBuilder changed = model;
-        changed.json[place] = value;
+        changed.json[location] = value;
         tryBytes(changed.glb(), tally);
       }
-      if (place.back() != "0") break;  // parents once, by their first child
+      if (location.back() != "0") break;  // parents once, by their first child
     }
   }
   EXPECT_GT(tally.errors, 1000);
@@ -132,13 +132,13 @@ TEST(HostileJson, EveryMemberTakenOut) {
   Tally tally;
   const Json flat = model.json.flatten();
   for (const auto& [pointer, leaf] : flat.items()) {
-    for (Json::json_pointer place(pointer); !place.empty(); place = place.parent_pointer()) {
+    for (Json::json_pointer location(pointer); !location.empty(); location = location.parent_pointer()) {
       GltfBuilder changed = model;
-      Json& parent = changed.json[place.parent_pointer()];
+      Json& parent = changed.json[location.parent_pointer()];
       if (parent.is_object()) {
-        parent.erase(place.back());
+        parent.erase(location.back());
       } else {
-        parent.erase(std::stoul(place.back()));
+        parent.erase(std::stoul(location.back()));
       }
       tryBytes(changed.glb(), tally);
     }

@@ -172,7 +172,7 @@ class Merger {
       const Index node = firstNode_.back() + root;
       (isPlacedByJoints(nodes[node]) ? roots_ : top.children).push_back(node);
     }
-    setNodeTransform(top, part.place, true);
+    setNodeTransform(top, part.transform, true);
     top_.push_back(addElement(nodes, std::move(top)));
   }
 

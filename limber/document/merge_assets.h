@@ -19,7 +19,7 @@ struct AssetPart {
 
   Asset asset;                     // must have passed checkAsset
   std::string name;                // of the node that is made for it
-  Affine place;                    // of that node, in the space of the scene or of what carries it
+  Affine transform;                // of that node, in the space of the scene or of what carries it
   std::optional<Carrier> carrier;  // none: the scene
 };
 

@@ -122,7 +122,7 @@ Asset motionFileAsset(const Motion& motion, std::string_view name, const char* f
 // A rotation of length 0 is none, but everything else of such a file can be read.
 void repairRotations(Asset& asset) {
   for (gltf::Node& node : asset.document.nodes) {
-    if (!node.rotation || !(node.rotation->squaredNorm() < kLeastSquaredRotation)) continue;
+    if (!node.rotation || !(node.rotation->squaredNorm() < kMinSquaredRotation)) continue;
     node.rotation.reset();
     asset.warnings.add("invalid-rotations", "nodes with a rotation of length 0 are not rotated", node.name);
   }
@@ -152,10 +152,10 @@ Resolver folderResolver(const fs::path& folder) {
   return [folder](std::string_view path) -> std::optional<Bytes> {
     const std::string local(path);
     checkLocalPath(local);
-    const fs::path place = folder / local;
+    const fs::path location = folder / local;
     std::error_code ignored;
-    if (!fs::is_regular_file(place, ignored)) return std::nullopt;
-    return readFile(place);
+    if (!fs::is_regular_file(location, ignored)) return std::nullopt;
+    return readFile(location);
   };
 }
 

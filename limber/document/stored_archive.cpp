@@ -16,7 +16,7 @@ namespace {
 
 // Signatures and sizes in bytes of the records that APPNOTE.TXT 6.3 (PKWARE) lays down.
 constexpr std::uint32_t kLocalFile = 0x04034b50, kDirectoryEntry = 0x02014b50, kDirectoryEnd = 0x06054b50;
-constexpr std::size_t kLocalSize = 30, kEntrySize = 46, kEndSize = 22, kMostComment = 65535;
+constexpr std::size_t kLocalSize = 30, kEntrySize = 46, kEndSize = 22, kMaxComment = 65535;
 constexpr std::uint32_t kStored = 0, kDeflated = 8;    // ways of packing
 constexpr std::uint64_t kMaxUnpacked = 2'000'000'000;  // of files together
 constexpr std::uint32_t kInZip64 = 0xffffffff;         // in place of a number that stands elsewhere
@@ -67,8 +67,8 @@ class ArchiveWriter {
     put(directory_, at, 4);
     put(directory_, file.path);
     ++files_;
-    constexpr std::size_t kMostFiles = 65535;
-    if (bytes_.size() + directory_.size() >= kInZip64 - kEndSize || files_ > kMostFiles) {
+    constexpr std::size_t kMaxFiles = 65535;
+    if (bytes_.size() + directory_.size() >= kInZip64 - kEndSize || files_ > kMaxFiles) {
       throw Error(ErrorCode::kLimit, "is larger than a ZIP archive can be", file.path);
     }
   }
@@ -186,7 +186,7 @@ std::string ZipArchive::text(std::size_t at, std::size_t size) const {
 
 // Behind it is a comment of any length, whose length it tells.
 std::size_t ZipArchive::directoryEnd() const {
-  for (std::size_t back = kEndSize; back <= bytes_.size() && back <= kEndSize + kMostComment; ++back) {
+  for (std::size_t back = kEndSize; back <= bytes_.size() && back <= kEndSize + kMaxComment; ++back) {
     const std::size_t at = bytes_.size() - back;
     if (number(at, 4) == kDirectoryEnd && number(at + 20, 2) == back - kEndSize) return at;
   }
@@ -208,7 +208,7 @@ Bytes ZipArchive::contentOf(std::size_t entry, const std::string& path) const {
   const std::size_t begin = std::size_t{local} + kLocalSize + number(local + 26, 2) + number(local + 28, 2);
   if (begin > bytes_.size() || packed > bytes_.size() - begin) refuse("is cut off, or no ZIP archive");
   const ByteSpan data = bytes_.subspan(begin, packed);
-  if (method == kStored ? size != data.size() : size / kMostInflatedPerByte > data.size()) damaged();
+  if (method == kStored ? size != data.size() : size / kMaxInflatedPerByte > data.size()) damaged();
   Bytes content(size);
   if (method == kStored) {
     std::copy(data.begin(), data.end(), content.begin());

@@ -89,7 +89,7 @@ SkinWeightInfo inspectWeights(const SkinWeights& weights) {
       continue;
     }
     ++info.vertices;
-    info.mostInfluences = std::max(info.mostInfluences, influences);
+    info.maxInfluences = std::max(info.maxInfluences, influences);
     info.largestSumError = std::max(info.largestSumError, std::abs(sum - 1));
   }
   return info;

@@ -18,7 +18,7 @@ struct SkinWeightInfo {
   Index withoutWeights = 0;       // of the scene's other vertices
   float least = 0, greatest = 0;  // of all weights that are not zero
   double largestSumError = 0;     // the largest |sum - 1| of a vertex with weights
-  Index mostInfluences = 0;       // of one vertex
+  Index maxInfluences = 0;        // of one vertex
 };
 
 struct ClipInfo {

@@ -106,7 +106,7 @@ TEST(InspectAsset, ReadsWeightsAsStored) {
   EXPECT_FLOAT_EQ(info.weights->least, 0.1f);
   EXPECT_FLOAT_EQ(info.weights->greatest, 1.0f);
   EXPECT_NEAR(info.weights->largestSumError, 0.25, 1e-9);
-  EXPECT_EQ(info.weights->mostInfluences, 2u);
+  EXPECT_EQ(info.weights->maxInfluences, 2u);
 }
 
 // A person of VRM's names as a motion file has it: a skeleton without a mesh.

@@ -25,8 +25,8 @@ struct Job {
   std::function<int()> work;
   std::filesystem::path folder;  // that it works in
   JobLimits limits;
-  std::optional<int> outOfMemoryCode;             // by which the program says that memory did not suffice
-  std::size_t mostOutput = std::size_t{1} << 20;  // bytes kept of each stream: the last
+  std::optional<int> outOfMemoryCode;            // by which the program says that memory did not suffice
+  std::size_t maxOutput = std::size_t{1} << 20;  // bytes kept of each stream: the last
 };
 
 enum class JobOutcome {

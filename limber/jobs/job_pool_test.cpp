@@ -139,7 +139,7 @@ TEST(JobPool, WhatAJobLeavesRunningEndsWithIt) {
 
 TEST(JobPool, KeepsTheLastOfALongOutput) {
   Job job = shell("i=0; while [ $i -lt 2000 ]; do echo line $i; i=$((i+1)); done");
-  job.mostOutput = 100;
+  job.maxOutput = 100;
   const JobResult result = runOne(job);
   EXPECT_THAT(result.out, AllOf(SizeIs(100), EndsWith("line 1999\n")));
 }
@@ -148,7 +148,7 @@ TEST(JobPool, EndlessOutputEndsInTime) {
   Job job;
   job.command = {"/bin/cat", "/dev/zero"};
   job.limits.seconds = 0.2;
-  job.mostOutput = 1000;
+  job.maxOutput = 1000;
   const JobResult result = runOne(job);
   EXPECT_EQ(result.outcome, JobOutcome::kTimedOut);
   EXPECT_EQ(result.out, std::string(1000, '\0'));

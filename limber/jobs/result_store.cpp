@@ -48,19 +48,19 @@ ResultStore::~ResultStore() {
   close(lock_);
 }
 
-fs::path ResultStore::placeOf(const std::string& key) const {
+fs::path ResultStore::pathOf(const std::string& key) const {
   return folder_ / (key + std::string(kExtension));
 }
 
 std::optional<std::string> ResultStore::find(const std::string& key) const {
   std::error_code unseen;
-  if (!fs::is_regular_file(placeOf(key), unseen)) return std::nullopt;
-  const Bytes bytes = readFile(placeOf(key));
+  if (!fs::is_regular_file(pathOf(key), unseen)) return std::nullopt;
+  const Bytes bytes = readFile(pathOf(key));
   return std::string(bytes.begin(), bytes.end());
 }
 
 void ResultStore::keep(const std::string& key, std::string_view text) {
-  writeFile(placeOf(key), asBytes(text));
+  writeFile(pathOf(key), asBytes(text));
 }
 
 }  // namespace limber

@@ -24,7 +24,7 @@ class ResultStore {
   void keep(const std::string& key, std::string_view text);
 
  private:
-  std::filesystem::path placeOf(const std::string& key) const;
+  std::filesystem::path pathOf(const std::string& key) const;
 
   std::filesystem::path folder_;
   int lock_ = -1;

@@ -55,8 +55,8 @@ struct ChildStart {
 
 [[noreturn]] void failBeforeProgram(const ChildStart& start) {
   const int reason = errno;
-  const ssize_t told = write(start.status, &reason, sizeof reason);
-  _exit(told == sizeof reason ? kCannotRun : kCannotRun - 1);
+  const ssize_t written = write(start.status, &reason, sizeof reason);
+  _exit(written == sizeof reason ? kCannotRun : kCannotRun - 1);
 }
 
 // What exec would close: pipes of guards, which would not see this program's end, and locks of files.
@@ -152,7 +152,7 @@ void RunningJob::readWhatIsThere(Stream& stream) const {
     if (got < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) return;
     if (got <= 0) return closeEnd(stream.pipe);
     stream.text.append(piece.data(), static_cast<std::size_t>(got));
-    if (stream.text.size() > 2 * job_.mostOutput) stream.text.erase(0, stream.text.size() - job_.mostOutput);
+    if (stream.text.size() > 2 * job_.maxOutput) stream.text.erase(0, stream.text.size() - job_.maxOutput);
     if (secondsNow() > deadline_) return;  // of a program that never stops printing
   }
 }
@@ -210,7 +210,7 @@ JobResult RunningJob::takeResult() {
     readWhatIsThere(*stream);
     closeEnd(stream->pipe);
     std::string& text = stream->text;
-    if (text.size() > job_.mostOutput) text.erase(0, text.size() - job_.mostOutput);
+    if (text.size() > job_.maxOutput) text.erase(0, text.size() - job_.maxOutput);
   }
   result_.out = std::move(out_.text);
   result_.error = std::move(error_.text);

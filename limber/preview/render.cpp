@@ -215,8 +215,8 @@ void Painter::paintTile(int column, int row, TileSamples& model, TileSamples& ov
     for (int x = 0; x < kTileSize && column * kTileSize + x < image.width; ++x) {
       const int px = column * kTileSize + x, py = row * kTileSize + y;
       const std::size_t base = (std::size_t(y) * kTileSize + std::size_t(x)) * kSamplesPerPixel;
-      const std::size_t place = std::size_t(py) * std::size_t(image.width) + std::size_t(px);
-      paintPixel(px, py, base, model, overlay, image.pixels.data() + place * image.channels);
+      const std::size_t index = std::size_t(py) * std::size_t(image.width) + std::size_t(px);
+      paintPixel(px, py, base, model, overlay, image.pixels.data() + index * image.channels);
     }
   }
 }

@@ -85,11 +85,11 @@ Scene boneScene(const Skeleton& skeleton, const Pose& pose) {
   for (const SceneJoint& joint : scene.joints) box.add(joint.position);
   ShapeMesh shapes;
   for (const Bone& bone : scene.bones) addOctahedralBone(shapes, bone.a, bone.b, jointColor(bone.joint));
-  constexpr double kJointRadius = 0.006;      // of the skeleton's diagonal
-  constexpr std::size_t kMostSpheres = 1000;  // more would hide the bones
+  constexpr double kJointRadius = 0.006;     // of the skeleton's diagonal
+  constexpr std::size_t kMaxSpheres = 1000;  // more would hide the bones
   const double radius = kJointRadius * (box.diagonal() > 0 ? box.diagonal() : 1);
   const Vec3f dark = linearFromSrgb(96, 104, 118);
-  if (scene.joints.size() <= kMostSpheres) {
+  if (scene.joints.size() <= kMaxSpheres) {
     for (const SceneJoint& joint : scene.joints) addSphere(shapes, joint.position, radius, dark);
   }
   scene.positions = std::move(shapes.positions);

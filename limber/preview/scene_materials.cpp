@@ -72,9 +72,9 @@ class MaterialCollector {
     const gltf::TextureUse* use = baseColorTexture(document_.materials[material]);
     if (use == nullptr) return false;
     constexpr const char* kTransform = "KHR_texture_transform";
-    const std::string place =
+    const std::string location =
         fmt::format("materials[{}].pbrMetallicRoughness.baseColorTexture.extensions.{}", material, kTransform);
-    const JsonView transform(extensionOf(*use, kTransform), place);
+    const JsonView transform(extensionOf(*use, kTransform), location);
     const std::size_t set = transform.count("texCoord").value_or(use->texCoord);
     const std::optional<Index> accessor = primitive.attributes.find(fmt::format("TEXCOORD_{}", set));
     if (!accessor || !textureOf(use->index)) return false;

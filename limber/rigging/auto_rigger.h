@@ -18,7 +18,7 @@ namespace limber {
 // A joint whose place is given.
 struct JointPin {
   std::string joint;
-  Vec3 place = Vec3::Zero();  // in the space of the mesh
+  Vec3 position = Vec3::Zero();  // in the space of the mesh
 };
 
 class CurveSkeleton;
@@ -57,7 +57,7 @@ struct TemplateMatch {
 };
 
 // Of an unsure template, joints to ask a user for.
-inline constexpr std::size_t kMostDoubts = 3;
+inline constexpr std::size_t kMaxDoubts = 3;
 
 // The confidence from which on a template is taken to be right in its limbs, too.
 inline constexpr double kSureTemplate = 0.75;

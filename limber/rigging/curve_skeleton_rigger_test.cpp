@@ -52,14 +52,14 @@ TEST(CurveSkeletonRigger, NamesTellTheSidesAndTheRootIsOnThePlane) {
   std::size_t pairs = 0;
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
     const std::string& name = skeleton.joints[j].name;
-    const Vec3 place = globals[j].translation();
+    const Vec3 position = globals[j].translation();
     const std::string side = name.substr(9);
-    EXPECT_EQ(side, place.x() > 0 ? ".L" : place.x() < 0 ? ".R" : "") << name;
+    EXPECT_EQ(side, position.x() > 0 ? ".L" : position.x() < 0 ? ".R" : "") << name;
     if (side != ".L") continue;
     ++pairs;
     const std::optional<Index> image = skeleton.find(name.substr(0, 9) + ".R");
     ASSERT_TRUE(image);
-    EXPECT_LT((globals[*image].translation() - Vec3(-place.x(), place.y(), place.z())).norm(), 1e-12);
+    EXPECT_LT((globals[*image].translation() - Vec3(-position.x(), position.y(), position.z())).norm(), 1e-12);
   }
   EXPECT_GE(pairs, 4u);
 }

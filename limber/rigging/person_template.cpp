@@ -32,9 +32,9 @@ bool isFinger(std::string_view bone) {
 
 std::optional<Index> playing(const PersonTemplate& person, std::string_view bone) {
   const std::optional<Index> sought = humanoid().find(bone);
-  const auto found = std::find(person.standsFor.begin(), person.standsFor.end(), sought);
-  return found == person.standsFor.end() ? std::nullopt
-                                         : std::optional(static_cast<Index>(found - person.standsFor.begin()));
+  const auto found = std::find(person.humanoidJoint.begin(), person.humanoidJoint.end(), sought);
+  return found == person.humanoidJoint.end() ? std::nullopt
+                                             : std::optional(static_cast<Index>(found - person.humanoidJoint.begin()));
 }
 
 // Ends of limbs, and the tips of the humanoid there.
@@ -53,19 +53,21 @@ constexpr std::array<LimbEnd, 5> kEnds = {{{"headTip", {"head", "neck"}, false},
 Vec3 trunkOf(const PersonTemplate& person) {
   Vec3 trunk = Vec3::Zero();
   for (const std::string side : {"left", "right"}) {
-    trunk += 0.5 * (person.skeleton.joints[*playing(person, side + "UpperArm")].place -
-                    person.skeleton.joints[*playing(person, side + "UpperLeg")].place);
+    trunk += 0.5 * (person.skeleton.joints[*playing(person, side + "UpperArm")].position -
+                    person.skeleton.joints[*playing(person, side + "UpperLeg")].position);
   }
   return trunk;
 }
 
 // Arms and legs run alike, square to the trunk: an animal's, whose front legs end in what is called a hand.
 bool onAllFours(const PersonTemplate& person) {
-  const auto place = [&](const std::string& bone) { return person.skeleton.joints[*playing(person, bone)].place; };
+  const auto positionOf = [&](const std::string& bone) {
+    return person.skeleton.joints[*playing(person, bone)].position;
+  };
   Vec3 arms = Vec3::Zero(), legs = Vec3::Zero();
   for (const std::string side : {"left", "right"}) {
-    arms += place(side + "LowerArm") - place(side + "UpperArm");
-    legs += place(side + "LowerLeg") - place(side + "UpperLeg");
+    arms += positionOf(side + "LowerArm") - positionOf(side + "UpperArm");
+    legs += positionOf(side + "LowerLeg") - positionOf(side + "UpperLeg");
   }
   const Vec3 trunk = trunkOf(person).normalized();
   arms.normalize();
@@ -75,9 +77,12 @@ bool onAllFours(const PersonTemplate& person) {
 
 // Rows: left, up and front as the limbs tell them. None where they all lie in a line.
 std::optional<Mat3> standingAxes(const PersonTemplate& person) {
-  const auto place = [&](const std::string& bone) { return person.skeleton.joints[*playing(person, bone)].place; };
+  const auto positionOf = [&](const std::string& bone) {
+    return person.skeleton.joints[*playing(person, bone)].position;
+  };
   Vec3 left = Vec3::Zero();
-  for (const std::string limb : {"UpperArm", "UpperLeg"}) left += place("left" + limb) - place("right" + limb);
+  for (const std::string limb : {"UpperArm", "UpperLeg"})
+    left += positionOf("left" + limb) - positionOf("right" + limb);
   const Vec3 up = trunkOf(person).normalized();
   left -= left.dot(up) * up;
   if (!(up.norm() > 0.5 && left.norm() > 1e-6)) return std::nullopt;
@@ -94,7 +99,7 @@ std::optional<Index> fingerEnd(const PersonTemplate& person, Index hand, const s
   for (const Index finger : fingers) {
     std::optional<Index> above = finger;
     while (above && *above != hand) above = person.skeleton.joints[*above].parent;
-    const double reach = (person.skeleton.joints[finger].place - person.skeleton.joints[hand].place).norm();
+    const double reach = (person.skeleton.joints[finger].position - person.skeleton.joints[hand].position).norm();
     if (!above || reach <= farthest) continue;
     farthest = reach;
     end = finger;
@@ -111,22 +116,22 @@ void addTips(PersonTemplate& person, const std::vector<Index>& fingers) {
     const std::optional<Index> joint = last ? last : playing(person, end.ends[1]);
     if (!joint) continue;
     const TemplateJoint& from = person.skeleton.joints[*joint];
-    const Index stands = *humanoid().find(end.tip);
+    const Index tipJoint = *humanoid().find(end.tip);
     TemplateJoint tip;
     tip.name = from.name + " tip";
     tip.parent = joint;
     tip.role = TemplateRole::kTip;
-    Vec3 reach = scale * (known[stands].place - known[*person.standsFor[*joint]].place);
+    Vec3 reach = scale * (known[tipJoint].position - known[*person.humanoidJoint[*joint]].position);
     if (!end.isHand) {
       // as it is
     } else if (const std::optional<Index> finger = fingerEnd(person, *joint, fingers)) {
-      reach = kBeyondFingers * (person.skeleton.joints[*finger].place - from.place);
+      reach = kBeyondFingers * (person.skeleton.joints[*finger].position - from.position);
     } else if (from.parent) {
-      reach = reach.norm() * (from.place - person.skeleton.joints[*from.parent].place).normalized();
+      reach = reach.norm() * (from.position - person.skeleton.joints[*from.parent].position).normalized();
     }
-    tip.place = from.place + reach;
+    tip.position = from.position + reach;
     person.skeleton.joints.push_back(std::move(tip));
-    person.standsFor.push_back(stands);
+    person.humanoidJoint.push_back(tipJoint);
   }
 }
 
@@ -150,7 +155,7 @@ std::optional<PersonTemplate> personTemplate(const Skeleton& skeleton, const Tem
     joint.role = part ? TemplateRole::kPlaced : TemplateRole::kBetween;
     joint.mirror.reset();
     person.skeleton.joints.push_back(std::move(joint));
-    person.standsFor.push_back(part);
+    person.humanoidJoint.push_back(part);
   }
   for (const std::string_view bone : kNeeded) {
     if (!playing(person, bone)) return std::nullopt;
@@ -159,33 +164,33 @@ std::optional<PersonTemplate> personTemplate(const Skeleton& skeleton, const Tem
   if (!axes || onAllFours(person)) return std::nullopt;
   double ground = 0;
   for (TemplateJoint& joint : person.skeleton.joints) {
-    joint.place = *axes * joint.place;
-    ground = std::min(ground, joint.place.y());
+    joint.position = *axes * joint.position;
+    ground = std::min(ground, joint.position.y());
   }
-  for (TemplateJoint& joint : person.skeleton.joints) joint.place.y() -= ground;
+  for (TemplateJoint& joint : person.skeleton.joints) joint.position.y() -= ground;
   addTips(person, fingers);
   return person;
 }
 
 std::vector<Vec3> placePerson(const PersonTemplate& person, const std::vector<Vec3>& fitted, const TemplatePins& pins) {
   TemplateSkeleton skeleton = person.skeleton;
-  std::vector<Vec3> places(skeleton.jointCount(), Vec3::Zero());
+  std::vector<Vec3> positions(skeleton.jointCount(), Vec3::Zero());
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
-    if (person.standsFor[j]) places[j] = fitted[*person.standsFor[j]];
+    if (person.humanoidJoint[j]) positions[j] = fitted[*person.humanoidJoint[j]];
     if (!pins[j]) continue;
-    places[j] = *pins[j];
+    positions[j] = *pins[j];
     skeleton.joints[j].role = TemplateRole::kPlaced;
   }
-  placeBetween(skeleton, places);
-  return places;
+  placeBetween(skeleton, positions);
+  return positions;
 }
 
 std::vector<JointPin> humanoidPins(const PersonTemplate& person, const std::vector<JointPin>& pins) {
   std::vector<JointPin> result;
   for (const JointPin& pin : pins) {
     const std::optional<Index> joint = person.skeleton.find(pin.joint);
-    if (joint && person.standsFor[*joint]) {
-      result.push_back({humanoid().joints[*person.standsFor[*joint]].name, pin.place});
+    if (joint && person.humanoidJoint[*joint]) {
+      result.push_back({humanoid().joints[*person.humanoidJoint[*joint]].name, pin.position});
     }
   }
   return result;
@@ -193,7 +198,7 @@ std::vector<JointPin> humanoidPins(const PersonTemplate& person, const std::vect
 
 TemplateSkeleton humanoidNamedAs(const PersonTemplate& person, TemplateSkeleton humanoid) {
   for (Index j = 0; j < person.skeleton.jointCount(); ++j) {
-    if (person.standsFor[j]) humanoid.joints[*person.standsFor[j]].name = person.skeleton.joints[j].name;
+    if (person.humanoidJoint[j]) humanoid.joints[*person.humanoidJoint[j]].name = person.skeleton.joints[j].name;
   }
   humanoid.name = person.skeleton.name;
   return humanoid;

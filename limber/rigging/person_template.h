@@ -13,7 +13,7 @@ struct PersonTemplate {
   // The user's, in its rest pose, turned so that it stands as templates do: joints that play a bone of a person are
   // placed, all others lie between. Tips of hands, feet and head stand last.
   TemplateSkeleton skeleton;
-  std::vector<std::optional<Index>> standsFor;  // #J, joints of the template "humanoid"
+  std::vector<std::optional<Index>> humanoidJoint;  // #J, joints of the template "humanoid"
 };
 
 // own  templateFrom(skeleton)

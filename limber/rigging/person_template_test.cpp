@@ -12,11 +12,11 @@ namespace limber {
 
 namespace {
 
-Index add(Skeleton& skeleton, const std::string& name, std::optional<Index> parent, const Vec3& place) {
+Index add(Skeleton& skeleton, const std::string& name, std::optional<Index> parent, const Vec3& position) {
   Joint joint;
   joint.name = name;
   joint.parent = parent;
-  joint.rest.translation = parent ? Vec3(place - restGlobals(skeleton)[*parent].translation()) : place;
+  joint.rest.translation = parent ? Vec3(position - restGlobals(skeleton)[*parent].translation()) : position;
   skeleton.joints.push_back(joint);
   return skeleton.jointCount() - 1;
 }
@@ -55,7 +55,7 @@ AutoRig rigged(const Skeleton& own, const TriMesh& mesh, std::vector<JointPin> p
   return rigWithTemplate(mesh, options, progress);
 }
 
-Vec3 place(const Skeleton& skeleton, const std::string& name) {
+Vec3 positionOf(const Skeleton& skeleton, const std::string& name) {
   return restGlobals(skeleton)[skeleton.find(name).value()].translation();
 }
 
@@ -81,10 +81,10 @@ TEST(PersonTemplate, FindsLimbsHoweverTheArmsAreHeld) {
       EXPECT_EQ(result.skeleton.joints[j].name, own.joints[j].name);
       EXPECT_EQ(result.skeleton.joints[j].parent, own.joints[j].parent);
     }
-    EXPECT_LT((place(result.skeleton, "Hand.L") - body.hand).norm(), 0.05);
-    EXPECT_LT((place(result.skeleton, "LowerArm.L") - body.elbow).norm(), 0.05);
-    EXPECT_LT((place(result.skeleton, "Foot.L") - body.ankle).norm(), 0.05);
-    EXPECT_LT((place(result.skeleton, "UpperLeg.L") - body.hip).norm(), 0.05);
+    EXPECT_LT((positionOf(result.skeleton, "Hand.L") - body.hand).norm(), 0.05);
+    EXPECT_LT((positionOf(result.skeleton, "LowerArm.L") - body.elbow).norm(), 0.05);
+    EXPECT_LT((positionOf(result.skeleton, "Foot.L") - body.ankle).norm(), 0.05);
+    EXPECT_LT((positionOf(result.skeleton, "UpperLeg.L") - body.hip).norm(), 0.05);
   }
 }
 
@@ -92,15 +92,15 @@ TEST(PersonTemplate, FindsLimbsHoweverTheArmsAreHeld) {
 TEST(PersonTemplate, OtherJointsGoAlong) {
   const testing::CapsulePerson body = testing::capsulePerson(0);
   const Skeleton skeleton = rigged(hangingArms(), body.mesh).skeleton;
-  EXPECT_LT(place(skeleton, "Root").norm(), 0.05) << "on the ground";
+  EXPECT_LT(positionOf(skeleton, "Root").norm(), 0.05) << "on the ground";
   for (const double s : {1.0, -1.0}) {
     const std::string side = s > 0 ? ".L" : ".R";
-    const Vec3 elbow = place(skeleton, "LowerArm" + side), hand = place(skeleton, "Hand" + side);
-    EXPECT_LT((place(skeleton, "ForearmTwist" + side) - (elbow + 3.0 / 7 * (hand - elbow))).norm(), 0.01);
-    const Vec3 sleeve = place(skeleton, "Sleeve" + side) - 0.5 * (place(skeleton, "UpperArm" + side) + elbow);
+    const Vec3 elbow = positionOf(skeleton, "LowerArm" + side), hand = positionOf(skeleton, "Hand" + side);
+    EXPECT_LT((positionOf(skeleton, "ForearmTwist" + side) - (elbow + 3.0 / 7 * (hand - elbow))).norm(), 0.01);
+    const Vec3 sleeve = positionOf(skeleton, "Sleeve" + side) - 0.5 * (positionOf(skeleton, "UpperArm" + side) + elbow);
     EXPECT_GT(sleeve.z(), 0.005) << "before the arm, as in the user's rest pose";
     EXPECT_LT(std::abs(sleeve.y()), 0.01);
-    EXPECT_GT(s * place(skeleton, "Middle1" + side).x(), s * hand.x() + 0.02) << "out with the hand";
+    EXPECT_GT(s * positionOf(skeleton, "Middle1" + side).x(), s * hand.x() + 0.02) << "out with the hand";
   }
 }
 
@@ -111,7 +111,7 @@ TEST(PersonTemplate, MayStandAnyWay) {
     const Quat turn(Eigen::AngleAxisd(EIGEN_PI / 2, axis));
     const Skeleton skeleton = rigged(turned(hangingArms(), turn), body.mesh).skeleton;
     for (const char* name : {"Hand.L", "Sleeve.R", "ForearmTwist.L", "Root"}) {
-      EXPECT_LT((place(skeleton, name) - place(usual, name)).norm(), 0.01) << name;
+      EXPECT_LT((positionOf(skeleton, name) - positionOf(usual, name)).norm(), 0.01) << name;
     }
   }
 }
@@ -120,8 +120,8 @@ TEST(PersonTemplate, KeepsPins) {
   const testing::CapsulePerson body = testing::capsulePerson();
   const Vec3 hand(0.36, 0.66, 0.02), twist(0.3, 0.7, 0.01);
   const Skeleton skeleton = rigged(hangingArms(), body.mesh, {{"Hand.L", hand}, {"ForearmTwist.L", twist}}).skeleton;
-  EXPECT_LT((place(skeleton, "Hand.L") - hand).norm(), 1e-6);
-  EXPECT_LT((place(skeleton, "ForearmTwist.L") - twist).norm(), 1e-6);
+  EXPECT_LT((positionOf(skeleton, "Hand.L") - hand).norm(), 1e-6);
+  EXPECT_LT((positionOf(skeleton, "ForearmTwist.L") - twist).norm(), 1e-6);
   EXPECT_THROW(rigged(hangingArms(), body.mesh, {{"Tail", twist}}), Error);
 }
 

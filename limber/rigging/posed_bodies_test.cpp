@@ -39,8 +39,8 @@ SeatedPerson seatedPerson() {
   return person;
 }
 
-Vec3 mirrored(const Vec3& place) {
-  return {-place.x(), place.y(), place.z()};
+Vec3 mirrored(const Vec3& position) {
+  return {-position.x(), position.y(), position.z()};
 }
 
 // A person in mid-stride who points forward: 1 high, facing +Z.
@@ -55,8 +55,9 @@ struct Strider {
 Strider strider() {
   Strider body;
   TriMesh& mesh = body.mesh;
-  const auto chain = [&](std::initializer_list<Vec3> places, double radius) {
-    for (auto a = places.begin(), b = a + 1; b != places.end(); ++a, ++b) testing::addCapsule(mesh, *a, *b, radius);
+  const auto chain = [&](std::initializer_list<Vec3> positions, double radius) {
+    for (auto a = positions.begin(), b = a + 1; b != positions.end(); ++a, ++b)
+      testing::addCapsule(mesh, *a, *b, radius);
   };
   testing::addCapsule(mesh, {0, 0.55, 0}, {0, 0.72, 0}, 0.085);
   testing::addCapsule(mesh, {0, 0.78, 0}, {0, 0.86, 0}, 0.03);
@@ -87,12 +88,12 @@ TEST(PosedBodies, HeadHandsAndFeetTellTheRestOfASeatedOne) {
   Progress progress;
   const Skeleton skeleton = rigWithTemplate(person.mesh, options, progress).skeleton;
   const std::vector<Affine> globals = restGlobals(skeleton);
-  const auto off = [&](const std::string& joint, const Vec3& place) {
-    return (globals[skeleton.find(joint).value()].translation() - place).norm();
+  const auto off = [&](const std::string& joint, const Vec3& position) {
+    return (globals[skeleton.find(joint).value()].translation() - position).norm();
   };
   for (const bool right : {false, true}) {
     const std::string side = right ? "right" : "left";
-    const auto sided = [&](const Vec3& place) { return right ? mirrored(place) : place; };
+    const auto sided = [&](const Vec3& position) { return right ? mirrored(position) : position; };
     EXPECT_LT(off(side + "UpperArm", sided(person.shoulder)), 0.08);
     EXPECT_LT(off(side + "LowerArm", sided(person.elbow)), 0.08);
     EXPECT_LT(off(side + "UpperLeg", sided(person.hip)), 0.08);
@@ -108,8 +109,8 @@ TEST(PosedBodies, LimbsMaySwing) {
   const AutoRig rig = rigWithTemplate(body.mesh, options, progress);
   EXPECT_GT(rig.matches.front().confidence, 0.6);
   const std::vector<Affine> globals = restGlobals(rig.skeleton);
-  const auto off = [&](const char* joint, const Vec3& place) {
-    return (globals[rig.skeleton.find(joint).value()].translation() - place).norm();
+  const auto off = [&](const char* joint, const Vec3& position) {
+    return (globals[rig.skeleton.find(joint).value()].translation() - position).norm();
   };
   EXPECT_LT(off("leftLowerArm", body.leftElbow), 0.07);
   EXPECT_LT(off("leftHand", body.leftHand), 0.07);
@@ -129,14 +130,14 @@ TEST(PosedBodies, OneWhoCrouchesOnABlockNeedsNoPins) {
   const AutoRig rig = rigWithTemplate(testing::statueOf(figure), options, progress);
   EXPECT_GT(rig.matches.front().confidence, 0.6);
   const std::vector<Affine> globals = restGlobals(rig.skeleton);
-  const auto off = [&](const char* joint, const Vec3& place) {
-    return (globals[rig.skeleton.find(joint).value()].translation() - place).norm();
+  const auto off = [&](const char* joint, const Vec3& position) {
+    return (globals[rig.skeleton.find(joint).value()].translation() - position).norm();
   };
-  EXPECT_LT(off("leftLowerArm", figure.places(0).middle), 0.07);
-  EXPECT_LT(off("rightHand", figure.places(1).ankle), 0.07);
-  EXPECT_LT(off("leftFoot", figure.places(2).ankle), 0.07);
-  EXPECT_LT(off("rightLowerLeg", figure.places(3).middle), 0.07);
-  EXPECT_LT(off("rightFoot", figure.places(3).ankle), 0.07);
+  EXPECT_LT(off("leftLowerArm", figure.positions(0).middle), 0.07);
+  EXPECT_LT(off("rightHand", figure.positions(1).ankle), 0.07);
+  EXPECT_LT(off("leftFoot", figure.positions(2).ankle), 0.07);
+  EXPECT_LT(off("rightLowerLeg", figure.positions(3).middle), 0.07);
+  EXPECT_LT(off("rightFoot", figure.positions(3).ankle), 0.07);
 }
 
 }  // namespace limber

@@ -8,7 +8,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kShareOfDiagonal = 0.05;  // the handle's radius: large enough to take hold of, and hides little
+constexpr double kDiagonalFraction = 0.05;  // the handle's radius: large enough to take hold of, and hides little
 
 }  // namespace
 
@@ -19,7 +19,7 @@ AutoRig rigAsProp(const TriMesh& mesh, const RigOptions&, Progress&) {
   Joint joint;
   joint.name = kPropRigger;
   joint.rest.translation = box.center();
-  joint.radius = kShareOfDiagonal * box.diagonal();
+  joint.radius = kDiagonalFraction * box.diagonal();
   rig.skeleton.joints.push_back(std::move(joint));
   return rig;
 }

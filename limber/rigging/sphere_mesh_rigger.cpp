@@ -12,7 +12,7 @@ namespace limber {
 
 namespace {
 
-constexpr Index kFewestSuggested = 5, kMostSuggested = 64, kMostListed = 8;
+constexpr Index kFewestSuggested = 5, kMaxSuggested = 64, kMaxListed = 8;
 constexpr Index kUsual = 20;           // handles that suit a character of four limbs and a head
 constexpr double kNeighborhood = 1.4;  // the trend is taken from a count divided by this to one multiplied by it
 
@@ -76,17 +76,17 @@ void checkHandles(const TriMesh& mesh, const RigOptions& options) {
 }
 
 Index suggestedFrom() {
-  return static_cast<Index>(kMostSuggested * kNeighborhood) + 1;
+  return static_cast<Index>(kMaxSuggested * kNeighborhood) + 1;
 }
 
 std::vector<HandleSuggestion> suggestHandles(const SphereMesh& spheres) {
-  return suggestHandles(spheres.errors(suggestedFrom()), spheres.mostSpheres());
+  return suggestHandles(spheres.errors(suggestedFrom()), spheres.maxSpheres());
 }
 
-std::vector<HandleSuggestion> suggestHandles(std::vector<double> errors, Index mostHandles) {
+std::vector<HandleSuggestion> suggestHandles(std::vector<double> errors, Index maxHandles) {
   const ErrorCurve curve(std::move(errors));
   std::vector<HandleSuggestion> steps;
-  const Index most = std::min(kMostSuggested, static_cast<Index>(curve.most() / kNeighborhood));
+  const Index most = std::min(kMaxSuggested, static_cast<Index>(curve.most() / kNeighborhood));
   for (Index count = kFewestSuggested; count <= most; ++count) {
     if (!curve.isStep(count)) continue;
     const double clearness = curve.bend(count) - distanceFromUsual(count);
@@ -99,9 +99,9 @@ std::vector<HandleSuggestion> suggestHandles(std::vector<double> errors, Index m
     const bool isNew = std::none_of(suggestions.begin(), suggestions.end(), [&](const HandleSuggestion& better) {
       return 10 * std::max(step.handles, better.handles) < 12 * std::min(step.handles, better.handles);
     });
-    if (isNew && suggestions.size() < kMostListed) suggestions.push_back(step);
+    if (isNew && suggestions.size() < kMaxListed) suggestions.push_back(step);
   }
-  if (suggestions.empty()) suggestions.push_back({std::min(kUsual, mostHandles), 0});
+  if (suggestions.empty()) suggestions.push_back({std::min(kUsual, maxHandles), 0});
   return suggestions;
 }
 

@@ -10,7 +10,7 @@ namespace limber {
 // slowly from there on, both in logarithms; counts near 20 before others. There is always at least one. Cost: O(1).
 std::vector<HandleSuggestion> suggestHandles(const SphereMesh& spheres);
 // The same of any errors for each count from 0 to suggestedFrom(), of a model that can have up to mostHandles.
-std::vector<HandleSuggestion> suggestHandles(std::vector<double> errors, Index mostHandles);
+std::vector<HandleSuggestion> suggestHandles(std::vector<double> errors, Index maxHandles);
 Index suggestedFrom();
 
 // The skeleton of `count` handles: a joint at each sphere's centre with the sphere's radius, without rotation, all in

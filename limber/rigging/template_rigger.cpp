@@ -48,10 +48,10 @@ constexpr double kOtherHands = 0.05;               // cost of fingers that hands
 constexpr double kWings = 2;                       // cost of arms as flat as wings
 constexpr double kRoundArm = 2.5, kFlatArm = 3.5;  // times as wide as thick
 constexpr double kVoteOfShape = 8;                 // times the odds of a template that has the plan of a sure shape
-constexpr double kSureShape = 0.9;         // confidence of a shape from which on templates of other plans are not tried
-constexpr double kLongLimb = 0.1;          // heights; fingers are shorter
-constexpr double kCostWithoutPlace = 100;  // above the cost of any limb that has one
-constexpr double kMostAsymmetry = 0.15;    // more than the most symmetric way to stand, of those looked at
+constexpr double kSureShape = 0.9;        // confidence of a shape from which on templates of other plans are not tried
+constexpr double kLongLimb = 0.1;         // heights; fingers are shorter
+constexpr double kCostOfUnmatched = 100;  // above the cost of any limb that has one
+constexpr double kMaxAsymmetry = 0.15;    // more than the most symmetric way to stand, of those looked at
 
 // Each joint once, and where the model may be: the model's size beyond its box is another unit.
 void checkPins(const TriMesh& mesh, const std::vector<JointPin>& pins) {
@@ -63,7 +63,7 @@ void checkPins(const TriMesh& mesh, const std::vector<JointPin>& pins) {
       throw Error(ErrorCode::kBadArgument, "is pinned twice", pin->joint, "give each joint one place");
     }
     const Vec3 low = box.min - margin, high = box.max + margin;
-    if ((pin->place.array() < low.array()).any() || (pin->place.array() > high.array()).any()) {
+    if ((pin->position.array() < low.array()).any() || (pin->position.array() > high.array()).any()) {
       throw KnownError(ErrorKind::kPinOutside,
                        {ErrorCode::kBadArgument, "is pinned far outside the model", pin->joint,
                         "places are in the file's space and unit; limber info tells its size"},
@@ -73,7 +73,7 @@ void checkPins(const TriMesh& mesh, const std::vector<JointPin>& pins) {
 }
 
 TemplatePins pinsIn(const TemplateSkeleton& skeleton, const AnatomicalFrame& frame, const std::vector<JointPin>& pins) {
-  TemplatePins places(skeleton.jointCount());
+  TemplatePins positions(skeleton.jointCount());
   for (const JointPin& pin : pins) {
     const std::optional<Index> joint = skeleton.find(pin.joint);
     if (!joint) {
@@ -82,9 +82,9 @@ TemplatePins pinsIn(const TemplateSkeleton& skeleton, const AnatomicalFrame& fra
       throw Error(ErrorCode::kBadArgument, fmt::format("the template has no joint '{}' to pin", pin.joint),
                   skeleton.name, "it has: " + known);
     }
-    places[*joint] = frame.toBody(pin.place);
+    positions[*joint] = frame.toBody(pin.position);
   }
-  return places;
+  return positions;
 }
 
 // A model as templates are tried on it.
@@ -114,12 +114,12 @@ Embedded bestEmbedding(const TemplateSkeleton& skeleton, const Model& model, con
   };
   std::vector<Look> looks;
   for (const AnatomicalFrame& frame : frames) {
-    if (frame.asymmetry > least + kMostAsymmetry) continue;
-    const TemplatePins places = pinsIn(skeleton, frame, pins);
+    if (frame.asymmetry > least + kMaxAsymmetry) continue;
+    const TemplatePins positions = pinsIn(skeleton, frame, pins);
     std::vector<TemplateVariant> variants = standing;
-    const std::vector<TemplateVariant> bent = bentToPins(skeleton, places);
+    const std::vector<TemplateVariant> bent = bentToPins(skeleton, positions);
     variants.insert(variants.end(), bent.begin(), bent.end());
-    TemplateEmbedder coarse(skeleton, body, frame, places, {kCoarseSpheres, false});
+    TemplateEmbedder coarse(skeleton, body, frame, positions, {kCoarseSpheres, false});
     const std::vector<TemplateFit> fits = fitVariants(variants, coarse);
     std::vector<std::size_t> order(fits.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -148,14 +148,14 @@ Embedded bestEmbedding(const TemplateSkeleton& skeleton, const Model& model, con
 // With what the body says of the limbs where they are now.
 TemplateFit judged(TemplateFit fit, const BodyVolume& body) {
   fit.limbs = limbsIn(fit.skeleton, fit.embedding, body, fit.frame);
-  const double flat = armFlatness(fit.skeleton, fit.embedding.places, body, fit.frame);
+  const double flat = armFlatness(fit.skeleton, fit.embedding.positions, body, fit.frame);
   fit.cost += kWings * std::clamp((flat - kRoundArm) / (kFlatArm - kRoundArm), 0.0, 1.0);
   return fit;
 }
 
 std::size_t missingLimbs(const TemplateFit& fit) {
   return static_cast<std::size_t>(
-      std::count_if(fit.limbs.begin(), fit.limbs.end(), [](const TemplateLimb& limb) { return !limb.hasPlace; }));
+      std::count_if(fit.limbs.begin(), fit.limbs.end(), [](const TemplateLimb& limb) { return !limb.hasMatch; }));
 }
 
 // By the cost, and by the share of limbs that have a place: half a body is soon no body.
@@ -177,14 +177,14 @@ struct FigureOnce {
 std::optional<TemplateFit> figureFit(const TemplateSkeleton& skeleton, const Model& model,
                                      const std::vector<JointPin>& pins, FigureOnce& once, Progress& progress) {
   const AnatomicalFrame& frame = model.frames.front();
-  const TemplatePins places = pinsIn(skeleton, frame, pins);
+  const TemplatePins positions = pinsIn(skeleton, frame, pins);
   if (!once.wasSought) {
     progress.step("find figure");
     const Vec3 up = frame.axes.row(1).transpose();
-    once = {true, findFigure(model.body, {up, model.front, figurePins(skeleton, places, frame)}, progress)};
+    once = {true, findFigure(model.body, {up, model.front, figurePins(skeleton, positions, frame)}, progress)};
   }
   if (!once.figure) return {};
-  return fitOfFigure(skeleton, *once.figure, places, frame);
+  return fitOfFigure(skeleton, *once.figure, positions, frame);
 }
 
 // The template as it stands; where that is in doubt, a person in whatever pose; where that is, too, the template bent.
@@ -210,12 +210,12 @@ TemplateFit bestFit(const TemplateSkeleton& skeleton, const Model& model, const 
 void tellByFingers(const TriMesh& mesh, std::vector<TemplateFit>& fits) {
   for (TemplateFit& fit : fits) {
     if (!isHumanoid(fit.skeleton)) continue;
-    const auto place = [&](const std::string& joint) {
-      return fit.frame.fromBody(fit.embedding.places[fit.skeleton.find(joint).value()]);
+    const auto positionOf = [&](const std::string& joint) {
+      return fit.frame.fromBody(fit.embedding.positions[fit.skeleton.find(joint).value()]);
     };
     std::size_t fingers = kHandWithFingers;
     for (const std::string side : {"left", "right"}) {
-      fingers = std::min(fingers, countFingers(mesh, place(side + "Hand"), place(side + "HandTip")));
+      fingers = std::min(fingers, countFingers(mesh, positionOf(side + "Hand"), positionOf(side + "HandTip")));
     }
     const bool has = fit.skeleton.find("leftIndexProximal").has_value();
     if (has != (fingers == kHandWithFingers)) fit.cost += kOtherHands;
@@ -223,7 +223,7 @@ void tellByFingers(const TriMesh& mesh, std::vector<TemplateFit>& fits) {
 }
 
 // A template as it was fitted, and how sure it is that the model is of its kind.
-struct Guess {
+struct Hypothesis {
   TemplateFit fit;
   double vote = 0;               // of the shape, -1 to 1 (voteOf)
   std::optional<double> byPlan;  // the confidence of what is laid along the shape's curves
@@ -265,20 +265,20 @@ std::vector<AnatomicalFrame> framesLike(const std::optional<ShapeReading>& shape
   return {shape->frame};
 }
 
-Guess guessOf(TemplateFit fit, const std::optional<ShapeReading>& shape) {
+Hypothesis hypothesisOf(TemplateFit fit, const std::optional<ShapeReading>& shape) {
   const double vote = shape ? voteOf(*shape, fit.skeleton) : 0;
   return {std::move(fit), vote, {}};
 }
 
 // Laid along the shape's curves, with its pins.
-Guess planGuess(const PlanKind& kind, const ShapeReading& shape, const std::vector<JointPin>& pins) {
+Hypothesis planHypothesis(const PlanKind& kind, const ShapeReading& shape, const std::vector<JointPin>& pins) {
   TemplateFit fit = fitPlan(kind, shape);
   fit.pins = pinsIn(fit.skeleton, fit.frame, pins);
   for (Index j = 0; j < fit.skeleton.jointCount(); ++j) {
     if (!fit.pins[j]) continue;
-    fit.embedding.places[j] = *fit.pins[j];
+    fit.embedding.positions[j] = *fit.pins[j];
     const std::optional<Index> mirror = fit.skeleton.joints[j].mirror;
-    if (mirror && !fit.pins[*mirror]) fit.embedding.places[*mirror] = fit.pins[j]->cwiseProduct(Vec3(-1, 1, 1));
+    if (mirror && !fit.pins[*mirror]) fit.embedding.positions[*mirror] = fit.pins[j]->cwiseProduct(Vec3(-1, 1, 1));
   }
   return {std::move(fit), 0, likelihood(kind, shape)};
 }
@@ -309,52 +309,53 @@ std::shared_ptr<const MeasuredModel> measure(const TriMesh& mesh, const RigOptio
 }
 
 // Kinds of the shape's plan, of all or the one that is asked for.
-std::vector<Guess> planGuesses(const std::optional<ShapeReading>& shape, const PlanKind* asked,
-                               const std::vector<JointPin>& pins) {
+std::vector<Hypothesis> planHypotheses(const std::optional<ShapeReading>& shape, const PlanKind* asked,
+                                       const std::vector<JointPin>& pins) {
   if (asked && !shape) {
     throw Error(ErrorCode::kUnsupported,
                 "the model has no trunk between two sides that are alike, whose curves could be followed",
                 std::string(asked->name),
                 "`up` and `front` say how it stands; humanoid, quadruped and bird need neither");
   }
-  std::vector<Guess> guesses;
+  std::vector<Hypothesis> hypotheses;
   if (asked) {
-    guesses.push_back(planGuess(*asked, *shape, pins));
+    hypotheses.push_back(planHypothesis(*asked, *shape, pins));
   } else if (shape) {
     for (const PlanKind& kind : planKinds()) {
-      if (likelihood(kind, *shape) > 0) guesses.push_back(planGuess(kind, *shape, pins));
+      if (likelihood(kind, *shape) > 0) hypotheses.push_back(planHypothesis(kind, *shape, pins));
     }
   }
-  return guesses;
+  return hypotheses;
 }
 
-void warn(const Guess& guess, AutoRig& rig) {
-  const TemplateFit& fit = guess.fit;
+void warn(const Hypothesis& hypothesis, AutoRig& rig) {
+  const TemplateFit& fit = hypothesis.fit;
   if (const std::size_t missing = missingLimbs(fit); missing > 0) {
     rig.warnings.add("no-place", "limbs of the template have no place in the model",
-                     limbsWithoutPlace(fit.skeleton, fit.limbs), missing);
+                     unmatchedLimbs(fit.skeleton, fit.limbs), missing);
   }
-  if (guess.confidence() < kLikelyTemplate) {
-    rig.warnings.add("low-confidence",
-                     fmt::format("the model hardly looks like the template (confidence {:.2f})", guess.confidence()),
-                     fit.skeleton.name);
+  if (hypothesis.confidence() < kLikelyTemplate) {
+    rig.warnings.add(
+        "low-confidence",
+        fmt::format("the model hardly looks like the template (confidence {:.2f})", hypothesis.confidence()),
+        fit.skeleton.name);
   }
 }
 
 // How ill a limb stands in the model: the mean cost of its joints. Of bodies laid along curves, which have no costs,
 // long limbs come before short ones.
-double doubtOf(const Guess& guess, const TemplateLimb& limb, double length) {
-  if (guess.byPlan) return length;
+double doubtOf(const Hypothesis& hypothesis, const TemplateLimb& limb, double length) {
+  if (hypothesis.byPlan) return length;
   double cost = 0;
-  for (const Index joint : limb.placed) cost += guess.fit.embedding.costs[joint];
+  for (const Index joint : limb.placed) cost += hypothesis.fit.embedding.costs[joint];
   cost /= static_cast<double>(std::max<std::size_t>(1, limb.placed.size()));
-  return limb.hasPlace ? cost : kCostWithoutPlace + cost;
+  return limb.hasMatch ? cost : kCostOfUnmatched + cost;
 }
 
-std::vector<std::string> doubtsOf(const Guess& guess) {
+std::vector<std::string> doubtsOf(const Hypothesis& hypothesis) {
   std::vector<std::string> doubts;
-  if (guess.confidence() >= kSureTemplate) return doubts;
-  const TemplateFit& fit = guess.fit;
+  if (hypothesis.confidence() >= kSureTemplate) return doubts;
+  const TemplateFit& fit = hypothesis.fit;
   const std::vector<TemplateJoint>& joints = fit.skeleton.joints;
   struct Limb {
     Index end;
@@ -370,12 +371,12 @@ std::vector<std::string> doubtsOf(const Guess& guess) {
     const Index end = limb.joints.back();
     double length = 0;
     for (const Index joint : limb.joints) {
-      if (joints[joint].parent) length += (joints[joint].place - joints[*joints[joint].parent].place).norm();
+      if (joints[joint].parent) length += (joints[joint].position - joints[*joints[joint].parent].position).norm();
     }
     const std::optional<Index> mirror = joints[end].mirror;
     const bool isPinned = fit.pins[end] || (mirror && fit.pins[*mirror]);
     if (parts[end] || length < kLongLimb || isPinned) continue;
-    const double doubt = doubtOf(guess, limb, length);
+    const double doubt = doubtOf(hypothesis, limb, length);
     const auto other = std::find_if(limbs.begin(), limbs.end(), [&](const Limb& known) { return known.end == mirror; });
     if (other == limbs.end()) {
       limbs.push_back({end, doubt});
@@ -385,18 +386,19 @@ std::vector<std::string> doubtsOf(const Guess& guess) {
   }
   std::stable_sort(limbs.begin(), limbs.end(), [](const Limb& a, const Limb& b) { return a.doubt > b.doubt; });
   for (const Limb& limb : limbs) {
-    if (doubts.size() < kMostDoubts) doubts.push_back(joints[limb.end].name);
+    if (doubts.size() < kMaxDoubts) doubts.push_back(joints[limb.end].name);
   }
   return doubts;
 }
 
-std::vector<TemplateMatch> matchesOf(const std::vector<Guess>& guesses) {
+std::vector<TemplateMatch> matchesOf(const std::vector<Hypothesis>& hypotheses) {
   std::vector<TemplateMatch> matches;
-  for (const Guess& guess : guesses) matches.push_back({guess.fit.skeleton.name, guess.confidence()});
+  for (const Hypothesis& hypothesis : hypotheses)
+    matches.push_back({hypothesis.fit.skeleton.name, hypothesis.confidence()});
   return matches;
 }
 
-AutoRig withHandles(const TriMesh& mesh, const RigOptions& options, const Guess& likeliest, Progress& progress) {
+AutoRig withHandles(const TriMesh& mesh, const RigOptions& options, const Hypothesis& likeliest, Progress& progress) {
   AutoRig rig = rigWithSphereMesh(mesh, options, progress);
   rig.isAbstained = true;
   rig.warnings.add("no-template",
@@ -434,7 +436,7 @@ TemplateFit fitTemplate(const TemplateSkeleton& skeleton, const TriMesh& mesh, c
   return bestFit(skeleton, {body, frames, options.front}, options.pins, figure, progress);
 }
 
-Skeleton standingSkeleton(const TemplateSkeleton& skeleton, const std::vector<Vec3>& places,
+Skeleton standingSkeleton(const TemplateSkeleton& skeleton, const std::vector<Vec3>& positions,
                           const AnatomicalFrame& frame) {
   const Index count = skeleton.jointCount();
   std::vector<std::optional<Index>> next(count);
@@ -449,8 +451,8 @@ Skeleton standingSkeleton(const TemplateSkeleton& skeleton, const std::vector<Ve
   for (Index j = 0; j < count; ++j) {
     const TemplateJoint& from = skeleton.joints[j];
     if (from.role == TemplateRole::kTip) continue;
-    const Vec3 position = frame.fromBody(places[j]);
-    Vec3 bone = next[j] ? Vec3(frame.fromBody(places[*next[j]]) - position) : Vec3(Vec3::Zero());
+    const Vec3 position = frame.fromBody(positions[j]);
+    Vec3 bone = next[j] ? Vec3(frame.fromBody(positions[*next[j]]) - position) : Vec3(Vec3::Zero());
     if (!(bone.norm() > 1e-9)) bone = from.parent ? Vec3(globals[*from.parent].linear().col(1)) : up;
     const Vec3 y = bone.normalized();
     const Vec3& toward = std::abs(y.dot(front)) > std::cos(kPi / 6) ? up : front;
@@ -511,22 +513,22 @@ AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress
     fits.push_back(bestFit(*candidate, isQuadruped(*candidate) ? animal : model, pins, figure, progress, inPoses));
   }
   if (fits.size() > 1) tellByFingers(surface, fits);
-  std::vector<Guess> guesses;
-  for (TemplateFit& fit : fits) guesses.push_back(guessOf(std::move(fit), shape));
+  std::vector<Hypothesis> hypotheses;
+  for (TemplateFit& fit : fits) hypotheses.push_back(hypothesisOf(std::move(fit), shape));
   if (plan || leavesTheChoice(options)) {
-    for (Guess& guess : planGuesses(shape, plan, pins)) guesses.push_back(std::move(guess));
+    for (Hypothesis& hypothesis : planHypotheses(shape, plan, pins)) hypotheses.push_back(std::move(hypothesis));
   }
-  std::stable_sort(guesses.begin(), guesses.end(),
-                   [](const Guess& a, const Guess& b) { return a.confidence() > b.confidence(); });
-  Guess& likeliest = guesses.front();
+  std::stable_sort(hypotheses.begin(), hypotheses.end(),
+                   [](const Hypothesis& a, const Hypothesis& b) { return a.confidence() > b.confidence(); });
+  Hypothesis& likeliest = hypotheses.front();
   if (options.mayAbstain && leavesTheChoice(options) && likeliest.confidence() < kLikelyTemplate) {
     AutoRig rig = withHandles(mesh, options, likeliest, progress);
-    rig.matches = matchesOf(guesses);
+    rig.matches = matchesOf(hypotheses);
     return rig;
   }
   if (person && likeliest.confidence() < kLikelyTemplate) {
     // The model may stand as the user's skeleton does, and as no person of ours.
-    Guess asItIs = guessOf(bestFit(own, model, options.pins, figure, progress), shape);
+    Hypothesis asItIs = hypothesisOf(bestFit(own, model, options.pins, figure, progress), shape);
     if (asItIs.confidence() > likeliest.confidence()) {
       likeliest = std::move(asItIs);
       person.reset();
@@ -535,30 +537,30 @@ AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress
   TemplateFit& best = likeliest.fit;
 
   if (!likeliest.byPlan) {
-    refineHumanoid(best.skeleton, body, best.frame, best.pins, best.embedding.places);
-    placeBetween(best.skeleton, best.embedding.places);
-    if (!best.skeleton.bent()) refineHocks(best.skeleton, body, best.frame, best.pins, best.embedding.places);
-    refineQuadruped(best.skeleton, body, best.frame, best.pins, best.embedding.places);
+    refineHumanoid(best.skeleton, body, best.frame, best.pins, best.embedding.positions);
+    placeBetween(best.skeleton, best.embedding.positions);
+    if (!best.skeleton.bent()) refineHocks(best.skeleton, body, best.frame, best.pins, best.embedding.positions);
+    refineQuadruped(best.skeleton, body, best.frame, best.pins, best.embedding.positions);
     const std::size_t missing = missingLimbs(best);
-    findHeadless(best.skeleton, best.embedding.places, best.limbs);
+    findHeadless(best.skeleton, best.embedding.positions, best.limbs);
     // A shape that ends at the shoulders speaks for nobody.
     if (missingLimbs(best) > missing) likeliest.vote = std::min(likeliest.vote, 0.0);
   }
   AutoRig rig;
   if (person) {
     const TemplatePins ownPins = pinsIn(person->skeleton, best.frame, options.pins);
-    const std::vector<Vec3> places = placePerson(*person, best.embedding.places, ownPins);
-    rig.skeleton = standingSkeleton(person->skeleton, places, best.frame);
+    const std::vector<Vec3> positions = placePerson(*person, best.embedding.positions, ownPins);
+    rig.skeleton = standingSkeleton(person->skeleton, positions, best.frame);
     best.skeleton = humanoidNamedAs(*person, std::move(best.skeleton));
   } else {
-    rig.skeleton = standingSkeleton(best.skeleton, best.embedding.places, best.frame);
+    rig.skeleton = standingSkeleton(best.skeleton, best.embedding.positions, best.frame);
   }
   if (cleared) {
     rig.warnings.add("stray-pieces", "triangles that float about the model are left out of account", {},
                      mesh.triangleCount() - cleared->triangleCount());
   }
   rig.up = best.frame.axes.row(1).transpose();
-  rig.matches = matchesOf(guesses);
+  rig.matches = matchesOf(hypotheses);
   if (!person) rig.doubts = doubtsOf(likeliest);
   warn(likeliest, rig);
   return rig;

@@ -17,7 +17,7 @@ namespace limber {
 // the end of a chain on in the direction of the bone above. Its local +Z is as near to the body's front as it can be;
 // for a bone that itself points within 30 degrees of front or back, to the body's up. So the two sides mirror each
 // other.
-Skeleton standingSkeleton(const TemplateSkeleton& skeleton, const std::vector<Vec3>& places,
+Skeleton standingSkeleton(const TemplateSkeleton& skeleton, const std::vector<Vec3>& positions,
                           const AnatomicalFrame& frame);
 
 // The way to stand and the variant of the template that fit best. Reads up, front and pins of the options.

@@ -30,7 +30,7 @@ const AutoRig& riggedPerson() {
   return result;
 }
 
-Vec3 place(const Skeleton& skeleton, const char* name) {
+Vec3 positionOf(const Skeleton& skeleton, const char* name) {
   return restGlobals(skeleton)[skeleton.find(name).value()].translation();
 }
 
@@ -65,7 +65,7 @@ TEST(TemplateRigger, SpecksAboutAPersonDoNotCount) {
   EXPECT_TRUE(warnsOf(result, "stray-pieces"));
   EXPECT_EQ(result.warnings.items().front().count, mesh.triangleCount() - bodyTriangles);
   for (const char* joint : {"head", "leftHand", "rightToes", "hips"}) {
-    EXPECT_LT((place(result.skeleton, joint) - place(riggedPerson().skeleton, joint)).norm(), 0.02) << joint;
+    EXPECT_LT((positionOf(result.skeleton, joint) - positionOf(riggedPerson().skeleton, joint)).norm(), 0.02) << joint;
   }
 }
 
@@ -74,9 +74,9 @@ TEST(TemplateRigger, NamesTheJointsOfAPerson) {
   const AutoRig& result = riggedPerson();
   checkSkeleton(result.skeleton);
   EXPECT_EQ(result.skeleton.jointCount(), 22u);
-  EXPECT_LT((place(result.skeleton, "leftHand") - body.hand).norm(), 0.08);
-  EXPECT_LT((place(result.skeleton, "rightFoot") - body.ankle.cwiseProduct(Vec3(-1, 1, 1))).norm(), 0.05);
-  EXPECT_LT((place(result.skeleton, "leftUpperLeg") - body.hip).norm(), 0.05);
+  EXPECT_LT((positionOf(result.skeleton, "leftHand") - body.hand).norm(), 0.08);
+  EXPECT_LT((positionOf(result.skeleton, "rightFoot") - body.ankle.cwiseProduct(Vec3(-1, 1, 1))).norm(), 0.05);
+  EXPECT_LT((positionOf(result.skeleton, "leftUpperLeg") - body.hip).norm(), 0.05);
   EXPECT_TRUE(result.warnings.empty());
   ASSERT_EQ(result.matches.size(), 1u);
   EXPECT_GT(result.matches[0].confidence, 0.7);
@@ -90,7 +90,7 @@ TEST(TemplateRigger, FeetAreAtTheHocksOfLegsThatBendBack) {
   for (const double s : {1.0, -1.0}) {
     const std::string side = s > 0 ? "left" : "right";
     const auto off = [&](const char* joint, const Vec3& there) {
-      return (place(result.skeleton, (side + joint).c_str()) - there.cwiseProduct(Vec3(s, 1, 1))).norm();
+      return (positionOf(result.skeleton, (side + joint).c_str()) - there.cwiseProduct(Vec3(s, 1, 1))).norm();
     };
     EXPECT_LT(off("LowerLeg", body.knee), 0.06);
     EXPECT_LT(off("Foot", body.ankle), 0.04);
@@ -111,13 +111,13 @@ TEST(TemplateRigger, FindsTheLimbsOfAToy) {
   options.up = Vec3::UnitY();
   options.front = Vec3::UnitZ();
   const Skeleton skeleton = rig(toy, options).skeleton;
-  EXPECT_LT(place(skeleton, "leftUpperLeg").y(), 0.25);
-  EXPECT_LT(place(skeleton, "leftFoot").y(), 0.1);
-  EXPECT_LT(std::abs(place(skeleton, "leftFoot").x() - 0.09), 0.06);
-  EXPECT_LT(place(skeleton, "leftUpperArm").y(), 0.42);
-  EXPECT_GT(place(skeleton, "leftHand").x(), 0.25);
-  EXPECT_LT(std::abs(place(skeleton, "leftHand").y() - 0.34), 0.04);
-  EXPECT_GT(place(skeleton, "head").y(), 0.4);
+  EXPECT_LT(positionOf(skeleton, "leftUpperLeg").y(), 0.25);
+  EXPECT_LT(positionOf(skeleton, "leftFoot").y(), 0.1);
+  EXPECT_LT(std::abs(positionOf(skeleton, "leftFoot").x() - 0.09), 0.06);
+  EXPECT_LT(positionOf(skeleton, "leftUpperArm").y(), 0.42);
+  EXPECT_GT(positionOf(skeleton, "leftHand").x(), 0.25);
+  EXPECT_LT(std::abs(positionOf(skeleton, "leftHand").y() - 0.34), 0.04);
+  EXPECT_GT(positionOf(skeleton, "head").y(), 0.4);
 }
 
 TEST(TemplateRigger, JointsPointAlongTheirBones) {
@@ -125,7 +125,7 @@ TEST(TemplateRigger, JointsPointAlongTheirBones) {
   const std::vector<Affine> globals = restGlobals(skeleton);
   for (const auto& [joint, child] : {std::pair("hips", "spine"), std::pair("leftUpperArm", "leftLowerArm"),
                                      std::pair("rightLowerLeg", "rightFoot"), std::pair("upperChest", "neck")}) {
-    const Vec3 bone = (place(skeleton, child) - place(skeleton, joint)).normalized();
+    const Vec3 bone = (positionOf(skeleton, child) - positionOf(skeleton, joint)).normalized();
     EXPECT_LT((globals[skeleton.find(joint).value()].linear().col(1) - bone).norm(), 1e-6) << joint;
   }
   for (const char* name : {"UpperArm", "LowerArm", "Hand", "UpperLeg", "Foot", "Toes"}) {
@@ -145,7 +145,7 @@ TEST(TemplateRigger, FollowsAModelThatStandsAnotherWay) {
   turn << 1, 0, 0, 0, 0, -1, 0, 1, 0;
   TriMesh lying = body.mesh;
   for (Vec3f& p : lying.positions) p = turn.cast<float>() * p;
-  EXPECT_LT((place(rig(lying, person()).skeleton, "leftHand") - turn * body.hand).norm(), 0.08);
+  EXPECT_LT((positionOf(rig(lying, person()).skeleton, "leftHand") - turn * body.hand).norm(), 0.08);
 
   const Mat3 about = Eigen::AngleAxisd(EIGEN_PI, Vec3::UnitY()).toRotationMatrix();
   TriMesh away = body.mesh;
@@ -153,14 +153,14 @@ TEST(TemplateRigger, FollowsAModelThatStandsAnotherWay) {
   RigOptions options = person();
   options.up = Vec3::UnitY();
   options.front = -Vec3::UnitZ();
-  EXPECT_LT((place(rig(away, options).skeleton, "leftHand") - about * body.hand).norm(), 0.08);
+  EXPECT_LT((positionOf(rig(away, options).skeleton, "leftHand") - about * body.hand).norm(), 0.08);
 }
 
 TEST(TemplateRigger, KeepsPins) {
   RigOptions options = person();
   options.pins = {{"leftHand", {0.4, 0.66, 0.03}}};
   const Skeleton skeleton = rig(testing::capsulePerson().mesh, options).skeleton;
-  EXPECT_LT((place(skeleton, "leftHand") - Vec3(0.4, 0.66, 0.03)).norm(), 1e-6);
+  EXPECT_LT((positionOf(skeleton, "leftHand") - Vec3(0.4, 0.66, 0.03)).norm(), 1e-6);
   for (const std::vector<JointPin>& wrong : {std::vector<JointPin>{{"tail", Vec3::Zero()}},
                                              {{"head", {0, 150, 0}}},
                                              {{"head", {0, 0.9, 0}}, {"head", {0, 1, 0}}}}) {
@@ -196,9 +196,9 @@ TEST(TemplateRigger, TakesSkeletonsWhoseSidesMeetOrCross) {
       options.templateSkeleton = ownSkeleton(collar, crossed);
       const Skeleton skeleton = rig(testing::capsulePerson().mesh, options).skeleton;
       checkSkeleton(skeleton);
-      EXPECT_GT(place(skeleton, "LeftHand").x(), 0.1) << collar << crossed;
-      EXPECT_LT(place(skeleton, "RightHand").x(), -0.1) << collar << crossed;
-      EXPECT_LT(std::abs(place(skeleton, "neck").x()), 0.03) << collar << crossed;
+      EXPECT_GT(positionOf(skeleton, "LeftHand").x(), 0.1) << collar << crossed;
+      EXPECT_LT(positionOf(skeleton, "RightHand").x(), -0.1) << collar << crossed;
+      EXPECT_LT(std::abs(positionOf(skeleton, "neck").x()), 0.03) << collar << crossed;
     }
   }
 }
@@ -349,7 +349,7 @@ TEST(TemplateRigger, PinsHoldWhatFollowsTheCurves) {
   const Vec3 pinned(0, 0.25, 0.3);
   options.pins = {{"chest", pinned}};
   const AutoRig result = autoRigged(testing::capsuleSnake(), options);
-  EXPECT_LT((place(result.skeleton, "chest") - pinned).norm(), 1e-9);
+  EXPECT_LT((positionOf(result.skeleton, "chest") - pinned).norm(), 1e-9);
   options.pins = {{"leftPaw", pinned}};
   EXPECT_THROW(autoRigged(testing::capsuleSnake(), options), Error);
 }

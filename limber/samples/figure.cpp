@@ -45,7 +45,7 @@ Vec3 mirroredOffset(const Vec3& v) {
   return {-v.x(), v.y(), v.z()};
 }
 
-Quat footTurn(const FootPlace& foot) {
+Quat footTurn(const FootPose& foot) {
   return about(Vec3::UnitY(), foot.outward) * about(Vec3::UnitX(), -foot.pitch);
 }
 
@@ -74,7 +74,7 @@ class Poser {
 
 void poseLeg(const Stance& stance, const std::string& side, Poser& poser) {
   const bool left = side == "left";
-  const FootPlace& foot = stance.feet[left ? 0 : 1];
+  const FootPose& foot = stance.feet[left ? 0 : 1];
   const auto toSide = [&](const Vec3& v) { return left ? v : mirroredOffset(v); };
   const auto turnToSide = [&](const Quat& q) { return left ? q : Quat(q.w(), q.x(), -q.y(), -q.z()); };
   TwoBone leg;
@@ -94,7 +94,7 @@ void poseLeg(const Stance& stance, const std::string& side, Poser& poser) {
 
 void poseArm(const Stance& stance, const std::string& side, Poser& poser) {
   const bool left = side == "left";
-  const ArmPlace& arm = stance.arms[left ? 0 : 1];
+  const ArmPose& arm = stance.arms[left ? 0 : 1];
   const auto turnToSide = [&](const Quat& q) { return left ? q : Quat(q.w(), q.x(), -q.y(), -q.z()); };
   const Quat chest = rotationOf(stance.chest);
   // The collar takes a part of what lifts the arm.
@@ -122,7 +122,7 @@ Quat rotationOf(const BodyTurn& turn) {
   return about(Vec3::UnitY(), turn.yaw) * about(Vec3::UnitX(), turn.pitch) * about(Vec3::UnitZ(), turn.roll);
 }
 
-Vec3 turnedFoot(const FootPlace& foot, const Vec3& toPoint) {
+Vec3 turnedFoot(const FootPose& foot, const Vec3& toPoint) {
   return footTurn(foot) * toPoint;
 }
 

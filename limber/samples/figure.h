@@ -16,23 +16,23 @@ Quat rotationOf(const BodyTurn& turn);
 
 // Where a foot is: its sole turned about +Y (toes outwards) and its pitch (toes up), radians, and how far the toes are
 // bent up against that.
-struct FootPlace {
+struct FootPose {
   Vec3 ankle = Vec3::Zero();
   double outward = 0, pitch = 0, toes = 0;
 };
 
 // Radians: from hanging outwards (a quarter turn is a T-pose), then forward; the elbow's bend, and how far the bent
 // forearm is turned from forwards to upwards about an upper arm that is held out.
-struct ArmPlace {
+struct ArmPose {
   double raise = 0, swing = 0, elbow = 0, twist = 0;
 };
 
 // Both sides as on the left: x outwards.
 struct Stance {
-  Vec3 pelvis = Vec3::Zero();     // the middle between the upper legs' joints
-  BodyTurn hips, chest, head;     // in the world
-  std::array<FootPlace, 2> feet;  // left, right
-  std::array<ArmPlace, 2> arms;
+  Vec3 pelvis = Vec3::Zero();    // the middle between the upper legs' joints
+  BodyTurn hips, chest, head;    // in the world
+  std::array<FootPose, 2> feet;  // left, right
+  std::array<ArmPose, 2> arms;
 };
 
 // 1.72 m tall, in T-pose, soles on y = 0, facing +Z; joints named as in VRM; all rest rotations are identities.
@@ -43,7 +43,7 @@ inline const Vec3 kToHeel(0, -0.09, -0.05), kToToes(0, -0.065, 0.12);
 inline constexpr double kAnkleHeight = 0.09;
 
 // From an ankle to a point of its foot, `toPoint` of a flat one.
-Vec3 turnedFoot(const FootPlace& foot, const Vec3& toPoint);
+Vec3 turnedFoot(const FootPose& foot, const Vec3& toPoint);
 
 // Legs reach their feet as far as they are long.
 Pose poseOf(const Skeleton& figure, const Stance& stance);

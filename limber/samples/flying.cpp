@@ -9,8 +9,8 @@
 #include "limber/document/rig/rig_io.h"
 #include "limber/geometry/mesh/prepare.h"
 #include "limber/rigging/weights/weight_method.h"
-#include "limber/samples/model_recipe.h"
 #include "limber/samples/model_builder.h"
+#include "limber/samples/model_recipe.h"
 
 namespace limber {
 
@@ -68,9 +68,9 @@ Skeleton flyingSkeleton() {
 // A swing about one axis: how the joint is held, and how far it goes to and fro with the wings; radians.
 struct Swing {
   const char* joint;
-  Vec3 axis;           // of a side's joints the left one's
-  double held, swing;  // about it
-  double lag;          // behind the wings' roots, of a beat
+  Vec3 axis;             // of a side's joints the left one's
+  double center, swing;  // about it
+  double lag;            // behind the wings' roots, of a beat
 };
 
 constexpr double kBeat = 0.9;      // seconds
@@ -101,7 +101,7 @@ void turn(const Skeleton& skeleton, const std::string& joint, const Vec3& axis, 
 // `beat` 0 to 1, wings at their highest at 0.
 Pose flyingAt(const Skeleton& skeleton, double beat) {
   const auto angleOf = [&](const Swing& swing) {
-    return swing.held + swing.swing * std::cos(2 * kPi * (beat - swing.lag));
+    return swing.center + swing.swing * std::cos(2 * kPi * (beat - swing.lag));
   };
   Pose pose = restPose(skeleton);
   pose.locals[skeleton.find(kHips).value()].translation.y() += kAltitude - kHeave * std::cos(2 * kPi * (beat - 0.08));

@@ -8,7 +8,7 @@
 
 #include "limber/core/text/numbers.h"
 #include "limber/samples/motions/motion_recipes.h"
-#include "limber/samples/motions/smooth_way.h"
+#include "limber/samples/motions/smooth_path.h"
 #include "limber/samples/placed_skeleton.h"
 #include "limber/skeleton/ik/solvers/two_bone.h"
 
@@ -26,17 +26,17 @@ std::string legName(const char* bone, int pair, bool left) {
 }
 
 // Where the limb's joints rest: the foot's tip last.
-struct LegPlaces {
+struct LegPositions {
   Vec3 upper, lower, foot, tip;
 };
-LegPlaces legAt(int pair, int pairs) {
+LegPositions legAt(int pair, int pairs) {
   const double along = 0.5 - static_cast<double>(pair) / (pairs - 1);  // from 0.5 to -0.5
   const double z = 0.2 * along, fan = 0.5 * along;
   return {{0.06, 0.18, z}, {0.2, 0.3, z + 0.3 * fan}, {0.36, 0.14, z + 0.8 * fan}, {0.42, 0.01, z + fan}};
 }
 
 // What is left of the way that a standing foot has gone back when it swings ahead again, 0 to 1 and back to 0.
-double footWay(double phase) {
+double footDisplacement(double phase) {
   if (phase < kDutyFactor) return phase / kDutyFactor;
   return 1 - smoothRise((phase - kDutyFactor) / (1 - kDutyFactor));
 }
@@ -53,10 +53,12 @@ Skeleton manyLegged(int pairs) {
   skeleton.add("tail1", "tail", {0, 0.2, -0.3});
   skeleton.add("tail2", "tail1", {0, 0.2, -0.4});
   for (int pair = 0; pair < pairs; ++pair) {
-    const LegPlaces leg = legAt(pair, pairs);
+    const LegPositions leg = legAt(pair, pairs);
     const std::string carrier = 2 * pair < pairs ? "chest" : "hips";
     for (const bool left : {true, false}) {
-      const auto sided = [&](const Vec3& place) { return Vec3(left ? place.x() : -place.x(), place.y(), place.z()); };
+      const auto sided = [&](const Vec3& position) {
+        return Vec3(left ? position.x() : -position.x(), position.y(), position.z());
+      };
       const std::string upper = legName("UpperLeg", pair, left), lower = legName("LowerLeg", pair, left),
                         foot = legName("Foot", pair, left);
       skeleton.add(upper, carrier, sided(leg.upper));
@@ -114,9 +116,9 @@ Pose scuttleAt(const Skeleton& skeleton, double seconds) {
       const double behind = (pair % 2 == 0) == left ? 0 : 0.5, own = strides - behind, phase = own - std::floor(own);
       const double swing = (phase - kDutyFactor) / (1 - kDutyFactor);  // below 0 while it stands
       // Ahead of where it rests by half the way that it stands, then back as far, as the body goes on.
-      const double way = kDutyFactor * kStride * (0.5 - footWay(phase));
+      const double pathLength = kDutyFactor * kStride * (0.5 - footDisplacement(phase));
       const Index end = skeleton.find(legName("Foot", pair, left)).value() + 1;
-      const Vec3 tip = rest[end].translation() + Vec3(0, kLift * smoothBump(swing), kStride * strides + way);
+      const Vec3 tip = rest[end].translation() + Vec3(0, kLift * smoothBump(swing), kStride * strides + pathLength);
       placeLeg(skeleton, pair, left, tip, rest, globals, pose);
     }
   }

@@ -14,12 +14,12 @@ class PlacedSkeleton {
  public:
   // parent  its name; empty for the root
   // place   metres
-  void add(const std::string& name, const std::string& parent, const Vec3& place) {
+  void add(const std::string& name, const std::string& parent, const Vec3& position) {
     Joint joint;
     joint.name = name;
     if (!parent.empty()) joint.parent = skeleton_.find(parent).value();
-    joint.rest.translation = joint.parent ? Vec3(place - places_[*joint.parent]) : place;
-    places_.push_back(place);
+    joint.rest.translation = joint.parent ? Vec3(position - positions_[*joint.parent]) : position;
+    positions_.push_back(position);
     skeleton_.joints.push_back(std::move(joint));
   }
 
@@ -27,7 +27,7 @@ class PlacedSkeleton {
 
  private:
   Skeleton skeleton_;
-  std::vector<Vec3> places_;  // #J
+  std::vector<Vec3> positions_;  // #J
 };
 
 }  // namespace limber

@@ -123,16 +123,16 @@ TEST(Flying, ComesWithARigAndABeatOfItsWingsThatRepeats) {
   ASSERT_EQ(clips.size(), 1u);
   EXPECT_EQ(clips[0].name, "fly");
   const Index hand = rig.skeleton.find("wing_hand.L").value(), other = rig.skeleton.find("wing_hand.R").value();
-  const auto handsAt = [&](double share) {
+  const auto handsAt = [&](double fraction) {
     Pose pose = restPose(rig.skeleton);
-    sampleClip(clips[0], share * clips[0].duration(), pose);
-    const std::vector<Vec3> places = posePositions(rig.skeleton, pose);
-    return std::pair(places[hand], places[other]);
+    sampleClip(clips[0], fraction * clips[0].duration(), pose);
+    const std::vector<Vec3> positions = posePositions(rig.skeleton, pose);
+    return std::pair(positions[hand], positions[other]);
   };
   EXPECT_GT(handsAt(0).first.y() - handsAt(0.5).first.y(), 0.3);  // metres, up and down
   EXPECT_LT((handsAt(0).first - handsAt(1).first).norm(), 1e-5);
-  for (const double share : {0.0, 0.3, 0.7}) {
-    const auto [left, right] = handsAt(share);
+  for (const double fraction : {0.0, 0.3, 0.7}) {
+    const auto [left, right] = handsAt(fraction);
     EXPECT_LT((left - Vec3(-right.x(), right.y(), right.z())).norm(), 1e-5);
   }
 }

@@ -115,10 +115,11 @@ void addPart(const TriMesh& body, const CutPart& part, const Storage& storage, C
   cut.vertexOf.insert(cut.vertexOf.end(), part.vertexOf.begin(), part.vertexOf.end());
 }
 
-const Transform kPlaces[] = {{Vec3(0.1, 0.2, 0.03), Quat(Eigen::AngleAxisd(0.2, Vec3::UnitY())), Vec3::Constant(0.01)},
-                             {Vec3(-0.3, 0.5, 0.1), Quat(Eigen::AngleAxisd(0.6, Vec3::UnitX())), Vec3::Constant(0.7)},
-                             {Vec3(0, 1, 0), Quat::Identity(), Vec3::Ones()},
-                             {Vec3(20, 1.4, 0.02), Quat(Eigen::AngleAxisd(1.3, Vec3::UnitZ())), Vec3::Constant(2.54)}};
+const Transform kSampleCount[] = {
+    {Vec3(0.1, 0.2, 0.03), Quat(Eigen::AngleAxisd(0.2, Vec3::UnitY())), Vec3::Constant(0.01)},
+    {Vec3(-0.3, 0.5, 0.1), Quat(Eigen::AngleAxisd(0.6, Vec3::UnitX())), Vec3::Constant(0.7)},
+    {Vec3(0, 1, 0), Quat::Identity(), Vec3::Ones()},
+    {Vec3(20, 1.4, 0.02), Quat(Eigen::AngleAxisd(1.3, Vec3::UnitZ())), Vec3::Constant(2.54)}};
 
 CutBody cutBody(const std::function<Storage(std::size_t part)>& storageOf) {
   CutBody cut;
@@ -148,7 +149,7 @@ std::vector<Stored> storages() {
   const double noise = 1e-7 * 1.8;  // of the size
   std::vector<Stored> result = {
       {"as_they_are", [] { return cutBody([](std::size_t) { return Storage(); }); }},
-      {"nodes", [] { return cutBody([](std::size_t p) { return Storage{kPlaces[p]}; }); }},
+      {"nodes", [] { return cutBody([](std::size_t p) { return Storage{kSampleCount[p]}; }); }},
       {"noise", [=] { return cutBody([=](std::size_t) {
                         return Storage{{}, 0, false, noise};
                       }); }},
@@ -159,7 +160,7 @@ std::vector<Stored> storages() {
                         return cutBody([=](std::size_t) { return Storage{{}, bits, true}; });
                       }});
     result.push_back({name + "_nodes", [=] {
-                        return cutBody([=](std::size_t p) { return Storage{kPlaces[p], bits, true}; });
+                        return cutBody([=](std::size_t p) { return Storage{kSampleCount[p], bits, true}; });
                       }});
     if (bits > 14) continue;  // floats on a grid that fine look like any others
     result.push_back({name + "_floats", [=] { return cutBody([=](std::size_t) { return Storage{{}, bits}; }); }});

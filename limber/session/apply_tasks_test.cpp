@@ -17,7 +17,7 @@ void tell(Session& session, const Command& command) {
   session.run(command, progress);
 }
 
-Vec3 placeOf(const Session& session, Index joint) {
+Vec3 positionOf(const Session& session, Index joint) {
   return posePositions(session.state().rig->skeleton(), session.state().pose)[joint];
 }
 
@@ -28,10 +28,10 @@ TEST(ApplyTasks, MovesTheModelAndSaysWhatBecameOfEach) {
   const Skeleton& skeleton = session.state().rig->skeleton();
   const Index last = skeleton.jointCount() - 1;
   const std::string name = skeleton.joints[last].name;
-  const Vec3 before = placeOf(session, last);
+  const Vec3 before = positionOf(session, last);
   tell(session, ApplyTasks{{"plane:" + name + "=above:0,1,0," + std::to_string(before.y() + 0.05),
                             "position:" + name + "=9,9,9@priority=1"}});
-  EXPECT_GE(placeOf(session, last).y(), before.y() + 0.05 - 1e-3);
+  EXPECT_GE(positionOf(session, last).y(), before.y() + 0.05 - 1e-3);
   const Json state = sessionState(session);
   ASSERT_EQ(state["tasks"].size(), 2u);
   EXPECT_EQ(state["tasks"][0]["met"], true);
@@ -47,10 +47,10 @@ TEST(ApplyTasks, WhatIsHeldStays) {
   tell(session, OpenSample{"biped", true});
   ASSERT_FALSE(session.state().targets.empty());
   std::vector<Vec3> feet;
-  for (const HeldTarget& foot : session.state().targets) feet.push_back(foot.position);
+  for (const PinnedTarget& foot : session.state().targets) feet.push_back(foot.position);
   tell(session, ApplyTasks{{"balance=centred"}, true});
   for (std::size_t f = 0; f < feet.size(); ++f) {
-    EXPECT_LT((placeOf(session, session.state().targets[f].joint) - feet[f]).norm(), 1e-3);
+    EXPECT_LT((positionOf(session, session.state().targets[f].joint) - feet[f]).norm(), 1e-3);
   }
 }
 

@@ -22,7 +22,7 @@ class PlaceJointTest : public ::testing::Test {
   }
   const Skeleton& skeleton() const { return session.state().rig->skeleton(); }
   Affine globalOf(Index joint) const { return poseGlobals(skeleton(), session.state().pose)[joint]; }
-  Vec3 placeOf(Index joint) const { return globalOf(joint).translation(); }
+  Vec3 positionOf(Index joint) const { return globalOf(joint).translation(); }
   Vec3 turnOf(Index joint) const {
     return pointFromRest(session.state().pose.locals[joint], skeleton().joints[joint].rest).turn;
   }
@@ -42,23 +42,23 @@ class PlaceJointTest : public ::testing::Test {
 
 TEST_F(PlaceJointTest, AHandTakesItsArmAlongAndTheFeetStay) {
   const Index hand = end(PartKind::kArm, Side::kLeft), above = *skeleton().joints[hand].parent;
-  const std::vector<HeldTarget> feet = session.state().targets;
-  const Vec3 wanted = placeOf(hand) + Vec3(-0.08, 0.1, 0.05);
-  const double bone = (placeOf(hand) - placeOf(above)).norm();
+  const std::vector<PinnedTarget> feet = session.state().targets;
+  const Vec3 wanted = positionOf(hand) + Vec3(-0.08, 0.1, 0.05);
+  const double bone = (positionOf(hand) - positionOf(above)).norm();
   run(PlaceJoint{name(hand), wanted});
-  EXPECT_LT((placeOf(hand) - wanted).norm(), 1e-3);
-  EXPECT_NEAR((placeOf(hand) - placeOf(above)).norm(), bone, 1e-9);
-  for (const HeldTarget& foot : feet) EXPECT_LT((placeOf(foot.joint) - foot.position).norm(), 1e-3);
+  EXPECT_LT((positionOf(hand) - wanted).norm(), 1e-3);
+  EXPECT_NEAR((positionOf(hand) - positionOf(above)).norm(), bone, 1e-9);
+  for (const PinnedTarget& foot : feet) EXPECT_LT((positionOf(foot.joint) - foot.position).norm(), 1e-3);
   EXPECT_EQ(session.undoName(), "place_joint");
   EXPECT_EQ(steps(), 1u);
 }
 
 TEST_F(PlaceJointTest, DoesWhatADragThereDoes) {
   const Index foot = end(PartKind::kLeg, Side::kLeft), hand = end(PartKind::kArm, Side::kLeft);
-  const Vec3 from = placeOf(foot), offset(0.03, 0.08, 0);
+  const Vec3 from = positionOf(foot), offset(0.03, 0.08, 0);
   run(PlaceJoint{name(foot), from + offset, {name(hand)}, true});
   const Pose placed = session.state().pose;
-  const std::vector<HeldTarget> held = session.state().targets;
+  const std::vector<PinnedTarget> pinned = session.state().targets;
   run(Undo{});
   run(BeginDrag{
       name(foot), DragMode::kMove, {from + Vec3::UnitZ(), -Vec3::UnitZ()}, -Vec3::UnitZ(), {name(hand)}, true});
@@ -67,9 +67,9 @@ TEST_F(PlaceJointTest, DoesWhatADragThereDoes) {
   for (Index j = 0; j < placed.locals.size(); ++j) {
     EXPECT_LT(angleBetween(placed.locals[j].rotation, session.state().pose.locals[j].rotation), 1e-6);
   }
-  ASSERT_EQ(held.size(), session.state().targets.size());
-  for (std::size_t t = 0; t < held.size(); ++t) {
-    EXPECT_LT((held[t].position - session.state().targets[t].position).norm(), 1e-6);
+  ASSERT_EQ(pinned.size(), session.state().targets.size());
+  for (std::size_t t = 0; t < pinned.size(); ++t) {
+    EXPECT_LT((pinned[t].position - session.state().targets[t].position).norm(), 1e-6);
   }
 }
 
@@ -87,8 +87,8 @@ TEST_F(PlaceJointTest, AJointTurnsToWhatIsSaidAndSeveralAtOnce) {
 TEST_F(PlaceJointTest, TheOtherSideTurnsInTheMirror) {
   const Index left = end(PartKind::kArm, Side::kLeft), right = end(PartKind::kArm, Side::kRight);
   run(SetTurn{name(*skeleton().joints[left].parent), {20, 10, -40}, {}, true});
-  const Vec3 image = placeOf(left).cwiseProduct(Vec3(-1, 1, 1));
-  EXPECT_LT((placeOf(right) - image).norm(), 2e-3);
+  const Vec3 image = positionOf(left).cwiseProduct(Vec3(-1, 1, 1));
+  EXPECT_LT((positionOf(right) - image).norm(), 2e-3);
 }
 
 TEST_F(PlaceJointTest, LimitsHold) {
@@ -113,7 +113,7 @@ TEST_F(PlaceJointTest, SeveralAreResetHeldAndLockedAsOneStep) {
   run(SetTurn{name(left), {0, 30, 0}, {name(right)}});
   run(ResetJoint{name(left), {name(right)}});
   EXPECT_LT(turnOf(left).norm() + turnOf(right).norm(), 1e-6);
-  run(SetTarget{name(left), placeOf(left), {name(right)}});
+  run(SetTarget{name(left), positionOf(left), {name(right)}});
   EXPECT_EQ(session.state().targets.size(), 4u);
   run(ClearTarget{name(left), {name(right)}});
   EXPECT_EQ(session.state().targets.size(), 2u);
@@ -146,7 +146,7 @@ TEST_F(PlaceJointTest, DragsThatGoOnAreOneStep) {
 
 TEST_F(PlaceJointTest, TheRecordReplayedGivesTheSamePose) {
   const std::string hand = name(end(PartKind::kArm, Side::kLeft));
-  run(PlaceJoint{hand, placeOf(end(PartKind::kArm, Side::kLeft)) + Vec3(0, 0.1, 0.1), {}, true});
+  run(PlaceJoint{hand, positionOf(end(PartKind::kArm, Side::kLeft)) + Vec3(0, 0.1, 0.1), {}, true});
   run(SetTurn{hand, {10, 20, 30}, {name(0)}});
   Session again;
   Progress progress;

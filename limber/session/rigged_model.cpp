@@ -17,7 +17,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kShareOfBone = 1.0 / 6, kLeastShare = 1e-3;
+constexpr double kBoneFraction = 1.0 / 6, kMinFraction = 1e-3;
 
 // The document has their names, too, so that a clip is found in what is saved of it.
 void readOwnClips(RiggedModel& model, Asset& document) {
@@ -51,13 +51,13 @@ std::shared_ptr<RiggedModel> readRig(std::shared_ptr<const Asset> document) {
 // A document has weights for all vertices that a node shows, or for none.
 void completeWeights(SkinWeights& weights, const Geometry& geometry) {
   const auto used = [&](std::size_t v) { return weights.weights[v * weights.slots] > 0; };
-  std::map<std::pair<Index, Index>, bool> held;
+  std::map<std::pair<Index, Index>, bool> skinned;
   for (const PrimitiveInstance& part : geometry.instances) {
-    bool& any = held[{part.node, part.copy}];
+    bool& any = skinned[{part.node, part.copy}];
     for (std::size_t i = 0; i < part.vertexCount && !any; ++i) any = used(part.firstVertex + i);
   }
   for (const PrimitiveInstance& part : geometry.instances) {
-    if (!held[{part.node, part.copy}]) continue;
+    if (!skinned[{part.node, part.copy}]) continue;
     for (std::size_t v = part.firstVertex; v < std::size_t{part.firstVertex} + part.vertexCount; ++v) {
       if (!used(v)) weights.weights[v * weights.slots] = 1;
     }
@@ -164,7 +164,7 @@ std::vector<double> handleRadii(const Skeleton& skeleton, double size) {
   std::vector<double> radii;
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
     const double radius = skeleton.joints[j].radius;
-    radii.push_back(std::max(radius > 0 ? radius : kShareOfBone * shortest[j], kLeastShare * size));
+    radii.push_back(std::max(radius > 0 ? radius : kBoneFraction * shortest[j], kMinFraction * size));
   }
   return radii;
 }

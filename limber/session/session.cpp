@@ -33,8 +33,8 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kMostRigs = 12;             // that an undo history keeps
-constexpr std::size_t kMostWeights = 32'000'000;  // influences that the rigs of an undo history hold
+constexpr std::size_t kMaxRigs = 12;             // that an undo history keeps
+constexpr std::size_t kMaxWeights = 32'000'000;  // influences that the rigs of an undo history hold
 
 [[noreturn]] void refuseSecond() {
   refuse("a session holds one model", {}, "a scene holds several");
@@ -74,7 +74,7 @@ void holdTargets(SessionState& state) {
 template <class Which>
 void followPose(SessionState& state, const Which& which) {
   const std::vector<Affine> globals = poseGlobals(state.rig->skeleton(), state.pose);
-  for (HeldTarget& target : state.targets) {
+  for (PinnedTarget& target : state.targets) {
     if (!which(target)) continue;
     target.position = globals[target.joint].translation();
     if (target.rotation) target.rotation = decompose(globals[target.joint]).rotation;
@@ -99,7 +99,7 @@ void applyTasks(SessionState& state, const ApplyTasks& command) {
       return !edit.joint.empty() && requireJoint(skeleton, edit.joint, edit.where) == joint;
     });
   };
-  for (const HeldTarget& target : state.targets) {
+  for (const PinnedTarget& target : state.targets) {
     if (!state.ik || isAsked(target.joint)) continue;
     tasks.push_back({PositionTask{target.joint, target.position}, 1, -1});
     if (target.rotation) tasks.push_back({OrientationTask{target.joint, *target.rotation}, 1, -1});
@@ -108,7 +108,7 @@ void applyTasks(SessionState& state, const ApplyTasks& command) {
   options.ik.rootMotion = command.rootMoves ? RootMotion::kTranslate : RootMotion::kFixed;
   options.masses = bodyMasses(state.rig->geometry(), state.rig->weights, skeleton);
   const IkTaskResult result = solveIkTasks(skeleton, state.pose, tasks, state.limits.get(), options);
-  followPose(state, [&](const HeldTarget& target) { return isAsked(target.joint); });
+  followPose(state, [&](const PinnedTarget& target) { return isAsked(target.joint); });
   authored(state);
   for (std::size_t t = 0; t < edits.size(); ++t) {
     state.tasks.push_back({command.tasks[t], taskOutcome(result.tasks[t]), result.tasks[t].met});
@@ -124,11 +124,11 @@ void holdStandingFeet(SessionState& state) {
 void applyPose(SessionState& state, const ApplyPose& command) {
   state.pose = appliedPose(*state.rig, state.pose, command);
   if (state.limbsFollow && state.ik) {
-    std::erase_if(state.targets, [](const HeldTarget& target) { return target.rotation.has_value(); });
+    std::erase_if(state.targets, [](const PinnedTarget& target) { return target.rotation.has_value(); });
   }
-  followPose(state, [](const HeldTarget&) { return true; });
+  followPose(state, [](const PinnedTarget&) { return true; });
   if (!state.limbsFollow || !state.ik) return;
-  for (const HeldTarget& foot : standingFeet(*state.rig, state.pose)) setTarget(state.targets, foot);
+  for (const PinnedTarget& foot : standingFeet(*state.rig, state.pose)) setTarget(state.targets, foot);
 }
 
 void letLimbsFollow(SessionState& state) {
@@ -306,7 +306,7 @@ struct Session::Runner {
     scene.limits = now.limits.get();
     scene.start = now.pose;
     scene.ik = now.ik;
-    scene.held = heldDuringDrag(*now.rig, now.pose, now.targets, joint);
+    scene.pinned = pinnedDuringDrag(*now.rig, now.pose, now.targets, joint);
     scene.rollRadius = std::max(2 * now.rig->radii[joint], longestSide(*now.rig) / 8);
     scene.solver = now.solver;
     scene.followers = followersOf(now, joint, c.with, c.mirrored);
@@ -363,7 +363,7 @@ struct Session::Runner {
   // What held joints hold on to goes along where the drag moved them.
   static void letGo(SessionState& next, const Drag& drag) {
     const Skeleton& skeleton = next.rig->skeleton();
-    followPose(next, [&](const HeldTarget& target) {
+    followPose(next, [&](const PinnedTarget& target) {
       return std::any_of(drag.dragged().begin(), drag.dragged().end(), [&](const DragFollower& f) {
         return f.joint == target.joint || isInLimbAbove(skeleton, f.joint, target.joint);
       });
@@ -378,7 +378,7 @@ struct Session::Runner {
 
   void operator()(const PlaceJoint& c) const {
     if (!c.position.allFinite()) refuse("the position is no number");
-    dragOnce(c, DragMode::kMove, [&](Drag& drag, const Vec3& place) { return drag.moved(c.position - place); });
+    dragOnce(c, DragMode::kMove, [&](Drag& drag, const Vec3& position) { return drag.moved(c.position - position); });
   }
   void operator()(const SetTurn& c) const {
     if (!c.turn.allFinite()) refuse("the turn is no number");
@@ -389,9 +389,9 @@ struct Session::Runner {
   void dragOnce(const Gesture& c, DragMode mode, const Move& move) const {
     SessionState next = state();
     const Index joint = requireJoint(next, c.joint);
-    const Vec3 place = poseGlobals(next.rig->skeleton(), next.pose)[joint].translation();
-    Drag drag(sceneOf(next, joint, c), joint, mode, {place + Vec3::UnitZ(), -Vec3::UnitZ()}, -Vec3::UnitZ());
-    next.pose = move(drag, place);
+    const Vec3 position = poseGlobals(next.rig->skeleton(), next.pose)[joint].translation();
+    Drag drag(sceneOf(next, joint, c), joint, mode, {position + Vec3::UnitZ(), -Vec3::UnitZ()}, -Vec3::UnitZ());
+    next.pose = move(drag, position);
     letGo(next, drag);
     session.commit(command, std::move(next));
   }
@@ -447,12 +447,12 @@ struct Session::Runner {
   }
   void operator()(const ResetJoint& c) const {
     SessionState next = state();
-    const std::vector<HeldTarget> feet =
-        next.limbsFollow ? standingFeet(*next.rig, next.rig->home) : std::vector<HeldTarget>();
+    const std::vector<PinnedTarget> feet =
+        next.limbsFollow ? standingFeet(*next.rig, next.rig->home) : std::vector<PinnedTarget>();
     for (const Index joint : jointsOf(next, c)) {
       next.pose.locals[joint] = next.rig->home.locals[joint];
       eraseTarget(next.targets, joint);
-      for (const HeldTarget& foot : feet) {
+      for (const PinnedTarget& foot : feet) {
         if (foot.joint == joint) next.targets.push_back(foot);
       }
     }
@@ -472,7 +472,7 @@ struct Session::Runner {
     SessionState next = state();
     const auto [plane, images] = mirrorOfRig(*next.rig);
     next.pose = mirrorPose(next.rig->skeleton(), next.pose, plane, images, c.from);
-    followPose(next, [](const HeldTarget&) { return true; });
+    followPose(next, [](const PinnedTarget&) { return true; });
     authored(next);
     session.commit(command, std::move(next));
   }
@@ -759,10 +759,10 @@ void Session::commit(const Command& command, SessionState next) {
       documents.insert(&rig->asset());
       if (rigs.insert(rig.get()).second) weights += rig->weights.weights.size();
     }
-    return documents.size() <= kMostRigs && weights <= kMostWeights;
+    return documents.size() <= kMaxRigs && weights <= kMaxWeights;
   };
   count(state_);
-  while (kept < std::min(undo_.size(), kMostSteps) && count(undo_[undo_.size() - 1 - kept].before)) ++kept;
+  while (kept < std::min(undo_.size(), kMaxSteps) && count(undo_[undo_.size() - 1 - kept].before)) ++kept;
   undo_.erase(undo_.begin(), undo_.end() - static_cast<std::ptrdiff_t>(kept));
 }
 

@@ -46,7 +46,7 @@ struct SessionState {
   bool limbsFollow = false;  // feet that stand are held while inverse kinematics is on, on each rig of the model anew
   std::string solver{kLimbSolver};                  // of ikMethods()
   std::string deformer{kLinearBlendDeformer.name};  // of deformers()
-  std::vector<HeldTarget> targets;
+  std::vector<PinnedTarget> targets;
   std::string limitsText;  // empty: none
   std::shared_ptr<const JointLimits> limits;
   std::set<std::string> locked;    // joints whose weights painting leaves as they are
@@ -60,7 +60,7 @@ struct Opening {
   bool asProp = false;  // a single joint where the file has no rig
 };
 
-inline constexpr std::size_t kMostSteps = 200;  // that an undo history keeps
+inline constexpr std::size_t kMaxSteps = 200;  // that an undo history keeps
 
 enum class ExportFormat { kGlb, kObj, kStl, kPly, kUsdz };
 

@@ -234,14 +234,14 @@ Json sessionState(const Session& session) {
     for (const HandleSuggestion& suggestion : rig.report->suggestions)
       json["suggestions"].push_back(suggestion.handles);
   }
-  for (const HeldTarget& target : state.targets) {
+  for (const PinnedTarget& target : state.targets) {
     json["targets"].push_back({{"joint", target.joint}, {"position", vectorJson(target.position)}});
   }
   for (const TaskOutcome& task : state.tasks) {
     json["tasks"].push_back({{"task", task.task}, {"outcome", task.outcome}, {"met", task.met}});
   }
   for (const JointPin& pin : state.pins) {
-    json["pins"].push_back({{"joint", pin.joint}, {"position", vectorJson(pin.place)}});
+    json["pins"].push_back({{"joint", pin.joint}, {"position", vectorJson(pin.position)}});
   }
   if (rig.report && !rig.edited) {
     for (const std::string& doubt : rig.report->doubts) {

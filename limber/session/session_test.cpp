@@ -44,11 +44,12 @@ Index lastJoint(const Session& session) {
   return session.state().rig->skeleton().jointCount() - 1;
 }
 
-void drag(Session& session, Index joint, DragMode mode, const Vec3& way) {
+void drag(Session& session, Index joint, DragMode mode, const Vec3& displacement) {
   const Vec3 from = jointAt(session, joint);
   run(session,
       BeginDrag{session.state().rig->skeleton().joints[joint].name, mode, {kCamera, from - kCamera}, kForward});
-  for (const double part : {0.3, 0.8, 1.0}) run(session, UpdateDrag{{kCamera, from + part * way - kCamera}, kForward});
+  for (const double part : {0.3, 0.8, 1.0})
+    run(session, UpdateDrag{{kCamera, from + part * displacement - kCamera}, kForward});
   run(session, EndDrag{});
 }
 
@@ -75,9 +76,9 @@ TEST(Session, ADragIsOneStepThatCanBeUndoneAndDoneAgain) {
   Session session = opened();
   const Pose before = session.state().pose;
   const Index joint = lastJoint(session);
-  const Vec3 from = jointAt(session, joint), way(0.2, -0.1, 0);
-  drag(session, joint, DragMode::kMove, way);
-  EXPECT_LT((jointAt(session, joint) - from - way).norm(), 1e-9);
+  const Vec3 from = jointAt(session, joint), displacement(0.2, -0.1, 0);
+  drag(session, joint, DragMode::kMove, displacement);
+  EXPECT_LT((jointAt(session, joint) - from - displacement).norm(), 1e-9);
   const Pose after = session.state().pose;
   EXPECT_EQ(session.undoName(), "end_drag");
   run(session, Undo{});
@@ -164,10 +165,10 @@ TEST(Session, IkPullsTheLimbAndTargetsHold) {
   ASSERT_NE(hand, kNoIndex);
   run(session, SetIk{true});
   const Vec3 toBase = jointAt(session, *limbBase(skeleton, hand)) - jointAt(session, hand);
-  Vec3 way = 0.2 * toBase + 0.2 * toBase.norm() * kForward.cross(toBase).normalized();
-  way.z() = 0;
-  const Vec3 goal = jointAt(session, hand) + way;
-  drag(session, hand, DragMode::kMove, way);
+  Vec3 displacement = 0.2 * toBase + 0.2 * toBase.norm() * kForward.cross(toBase).normalized();
+  displacement.z() = 0;
+  const Vec3 goal = jointAt(session, hand) + displacement;
+  drag(session, hand, DragMode::kMove, displacement);
   EXPECT_LT((jointAt(session, hand) - goal).norm(), 2e-3);
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
     EXPECT_EQ(session.state().pose.locals[j].translation, session.state().rig->home.locals[j].translation);
@@ -234,10 +235,10 @@ TEST(Session, LeftIsTheBodysOwn) {
 
 // Something of everything. Returns how many commands it took.
 std::size_t tellStory(Session& session) {
-  std::size_t told = 0;
+  std::size_t reported = 0;
   const auto tell = [&](const Command& command) {
     run(session, command);
-    ++told;
+    ++reported;
   };
   const auto joint = [&](std::size_t j) { return session.state().rig->skeleton().joints.at(j).name; };
   tell(OpenFile{"biped.glb"});
@@ -262,19 +263,19 @@ std::size_t tellStory(Session& session) {
   tell(SetHandles{30});
   tell(MirrorPose{MirrorFrom::kLeft});
   tell(ResetJoint{joint(5)});
-  return told;
+  return reported;
 }
 
 TEST(Session, TheRecordReplayedGivesTheSameBytes) {
   Session session(files);
-  const std::size_t told = tellStory(session);
+  const std::size_t reported = tellStory(session);
   const Bytes glb = session.exportModel(ExportFormat::kGlb);
   Session again(files);
   for (const Command& command : commandsFromJson(commandsToJson(session.record()))) run(again, command);
   EXPECT_EQ(again.exportModel(ExportFormat::kGlb), glb);
   EXPECT_EQ(again.saveSession(), session.saveSession());
   EXPECT_EQ(sessionState(again).dump(), sessionState(session).dump());
-  EXPECT_LT(session.record().size(), told);  // what never mattered is not in it
+  EXPECT_LT(session.record().size(), reported);  // what never mattered is not in it
 }
 
 TEST(Session, ASavedSessionComesBackAsItWas) {

@@ -9,7 +9,7 @@ namespace limber {
 
 namespace {
 
-constexpr float kLeastWeight = 1.0f / 16;
+constexpr float kMinWeight = 1.0f / 16;
 
 struct VertexSpread {
   double count = 0;
@@ -42,7 +42,7 @@ CarriedPoints carriedPoints(const Skeleton& skeleton, std::span<const Vec3f> pos
   const auto forEach = [&](const auto& act) {
     for (Index v = 0; v < positions.size(); ++v) {
       for (Index slot = 0; slot < weights.slots; ++slot) {
-        if (weights.weightsOf(v)[slot] < kLeastWeight) continue;
+        if (weights.weightsOf(v)[slot] < kMinWeight) continue;
         const Index joint = weights.jointsOf(v)[slot];
         act(spreads[joint], Vec3(toJoint[joint] * positions[v].cast<double>()));
       }

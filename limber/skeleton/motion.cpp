@@ -74,8 +74,8 @@ Index frameCount(const Clip& clip, double framesPerSecond) {
     throw Error(ErrorCode::kBadArgument, fmt::format("{} is no frame rate", framesPerSecond));
   }
   const double last = std::round(std::max(0.0, clip.duration()) * framesPerSecond);
-  constexpr double kMostFrames = 1 << 30;
-  if (!(last < kMostFrames)) {
+  constexpr double kMaxFrames = 1 << 30;
+  if (!(last < kMaxFrames)) {
     throw Error(ErrorCode::kLimit, fmt::format("has {:.0f} frames at {:g} a second", last, framesPerSecond),
                 fmt::format("clip '{}'", clip.name));
   }

@@ -6,8 +6,8 @@
 namespace limber {
 
 std::string commandWords(std::string_view text) {
-  constexpr std::size_t kMost = 1000;  // bytes
-  const std::string line = lastLine(text, kMost);
+  constexpr std::size_t kMax = 1000;  // bytes
+  const std::string line = lastLine(text, kMax);
   return validUtf8(line.starts_with(kSpeaker) ? std::string_view(line).substr(kSpeaker.size()) : line);
 }
 

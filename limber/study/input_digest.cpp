@@ -20,10 +20,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int kMostFolders = 8;  // on a path; links may make folders that have no end
+constexpr int kMaxFolders = 8;  // on a path; links may make folders that have no end
 
 // Formats whose files are whole by themselves.
-bool standsAlone(const fs::path& file) {
+bool isSelfContained(const fs::path& file) {
   constexpr std::string_view kAlone[] = {".glb", ".stl", ".ply", ".off", ".bvh",
                                          ".npz", ".bin", ".png", ".jpg", ".jpeg"};
   const std::string extension = lowerExtension(file);
@@ -44,8 +44,8 @@ void InputDigests::Names::add(const std::string& name) {
 }
 
 const InputDigests::FolderNames& InputDigests::namesIn(const fs::path& folder) {
-  const auto [place, isNew] = folders_.try_emplace(folder.string());
-  FolderNames& names = place->second;
+  const auto [entry, isNew] = folders_.try_emplace(folder.string());
+  FolderNames& names = entry->second;
   if (!isNew) return names;
   std::error_code problem;
   for (fs::directory_iterator it(folder, problem), end; !problem && it != end; it.increment(problem)) {
@@ -89,7 +89,7 @@ void InputDigests::findBelow(std::string_view text, const fs::path& folder, Path
       if (length > at) break;
       const auto named = folders.names.find(text.substr(at - length, length));
       if (named == folders.names.end()) continue;
-      findFrom(text.substr(at + 1), folder / named->second, named->second + '/', kMostFolders - 1, found);
+      findFrom(text.substr(at + 1), folder / named->second, named->second + '/', kMaxFolders - 1, found);
     }
   }
 }
@@ -122,7 +122,7 @@ InputDigests::Paths InputDigests::namedBeside(const fs::path& file) {
   while (!open.empty()) {
     const fs::path one = folder / open.back();
     open.pop_back();
-    if (standsAlone(one)) continue;
+    if (isSelfContained(one)) continue;
     check(one);
     const Bytes bytes = readFile(one);
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
@@ -159,7 +159,7 @@ InputDigest InputDigests::of(const fs::path& file) {
   digest.bytes = digestOf(file);
   JobKey key;
   key.add(lowerExtension(file)).add(digest.bytes);
-  if (!standsAlone(file)) {
+  if (!isSelfContained(file)) {
     for (const std::string& name : namedBeside(file)) key.add(name).add(digestOf(file.parent_path() / name));
   }
   digest.all = key.hex();

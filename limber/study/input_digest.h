@@ -24,7 +24,7 @@ struct InputDigest {
 // `mostBytes`.
 class InputDigests {
  public:
-  explicit InputDigests(std::uintmax_t mostBytes = std::numeric_limits<std::uintmax_t>::max()) : most_(mostBytes) {}
+  explicit InputDigests(std::uintmax_t maxBytes = std::numeric_limits<std::uintmax_t>::max()) : most_(maxBytes) {}
 
   InputDigest of(const std::filesystem::path& file);
 

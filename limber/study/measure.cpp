@@ -96,9 +96,9 @@ std::vector<MeasuredValue> measuresIn(const Json& figures, MeasureSource source)
   std::vector<MeasuredValue> values;
   for (const Measure& measure : kMeasures) {
     if (!includes(source, measure)) continue;
-    const Json::json_pointer place{std::string(measure.pointer)};
-    if (!figures.contains(place) || !figures[place].is_number()) continue;
-    const double value = figures[place].get<double>();
+    const Json::json_pointer location{std::string(measure.pointer)};
+    if (!figures.contains(location) || !figures[location].is_number()) continue;
+    const double value = figures[location].get<double>();
     if (std::isfinite(value)) values.push_back({&measure, value});
   }
   return values;

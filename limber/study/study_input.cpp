@@ -36,8 +36,8 @@ std::string lastParts(const fs::path& file, std::size_t parts) {
 
 // As short as tells each from all others.
 void nameInputs(std::vector<StudyInput>& inputs) {
-  constexpr std::size_t kMostParts = 64;
-  for (std::size_t parts = 0; parts < kMostParts; ++parts) {
+  constexpr std::size_t kMaxParts = 64;
+  for (std::size_t parts = 0; parts < kMaxParts; ++parts) {
     std::map<std::string, int> taken;
     for (StudyInput& input : inputs) {
       if (parts == 0 || input.name.empty()) input.name = lastParts(input.file, parts);
@@ -77,16 +77,17 @@ std::vector<StudyInput> findInputs(std::span<const std::string> names, InputKind
           {fs::absolute(samples / (sample + extension)).lexically_normal(), {}, std::string(kSampleGroup), sample});
       continue;
     }
-    const fs::path place = fs::absolute(folder / name).lexically_normal();
+    const fs::path location = fs::absolute(folder / name).lexically_normal();
     std::error_code unseen;
-    if (fs::is_directory(place, unseen)) {
-      const std::vector<fs::path> files = inputFilesBelow(place, kind);
-      if (files.empty()) throw Error(ErrorCode::kFile, "holds nothing that can be read", place.string());
+    if (fs::is_directory(location, unseen)) {
+      const std::vector<fs::path> files = inputFilesBelow(location, kind);
+      if (files.empty()) throw Error(ErrorCode::kFile, "holds nothing that can be read", location.string());
       for (const fs::path& file : files) addFile(file, inputs);
-    } else if (fs::exists(place, unseen)) {
-      addFile(place, inputs);
+    } else if (fs::exists(location, unseen)) {
+      addFile(location, inputs);
     } else {
-      throw Error(ErrorCode::kFile, "is not there", place.string(), "paths in a plan are seen from the plan's folder");
+      throw Error(ErrorCode::kFile, "is not there", location.string(),
+                  "paths in a plan are seen from the plan's folder");
     }
   }
   nameInputs(inputs);

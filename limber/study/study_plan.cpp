@@ -28,7 +28,7 @@ namespace limber {
 namespace {
 
 constexpr std::string_view kAll = "all", kVersionKey = "limber_study", kUsualSolver = "two-bone";
-constexpr std::size_t kMostThreads = 1024;
+constexpr std::size_t kMaxThreads = 1024;
 
 std::string textOf(const JsonView& value) {
   if (!value.exists() || !value.json().is_string() || value.json().get_ref<const std::string&>().empty()) {
@@ -337,7 +337,7 @@ StudyPlan planOf(const JsonView& root, const PlanMethods& methods) {
   plan.retarget = retargetPlanOf(root.object("retarget"), methods);
   readJobLimits(root.object("limits"), plan.limits);
   if (const auto threads = root.count("threads")) {
-    if (*threads > kMostThreads) root.member("threads").fail(fmt::format("is not from 0 to {}", kMostThreads));
+    if (*threads > kMaxThreads) root.member("threads").fail(fmt::format("is not from 0 to {}", kMaxThreads));
     plan.threads = static_cast<int>(*threads);
   }
   if (plan.rig.models.empty() && plan.retarget.characters.empty()) root.fail("has neither \"rig\" nor \"retarget\"");

@@ -54,7 +54,7 @@ Json keptJson(const CellResult& result, const JobLimits& limits) {
 }
 
 // Seen from the study's folder.
-fs::path placeOfPicture(const std::string& key, const std::string& name) {
+fs::path picturePath(const std::string& key, const std::string& name) {
   return fs::path(kPictures) / fmt::format("{}-{}.png", key, name);
 }
 
@@ -82,7 +82,7 @@ KeptCell keptCellOf(std::string_view text, const StudyCell& cell, const std::str
     const auto isMade = [&](const CellStep& step) { return !step.picture.empty() && name == step.picture; };
     const auto step = std::find_if(cell.steps.begin(), cell.steps.end(), isMade);
     if (step == cell.steps.end()) pictures[i].fail("is no picture of the cell");
-    kept.result.pictures.push_back({step->picture, placeOfPicture(key, step->picture)});
+    kept.result.pictures.push_back({step->picture, picturePath(key, step->picture)});
   }
   return kept;
 }
@@ -329,11 +329,11 @@ class StudyRun {
     }
     if (step.isTimed) taken.measures.push_back({&findMeasure("seconds"), result.seconds});
     if (!step.picture.empty()) {
-      const fs::path place = placeOfPicture(key, step.picture);
+      const fs::path location = picturePath(key, step.picture);
       std::error_code problem;
-      fs::rename(folder / (step.picture + ".png"), output_ / place, problem);
-      if (problem) throw Error(ErrorCode::kFile, "cannot be written: " + problem.message(), place.string());
-      taken.pictures.push_back({step.picture, place});
+      fs::rename(folder / (step.picture + ".png"), output_ / location, problem);
+      if (problem) throw Error(ErrorCode::kFile, "cannot be written: " + problem.message(), location.string());
+      taken.pictures.push_back({step.picture, location});
     }
   }
 

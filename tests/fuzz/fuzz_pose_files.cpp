@@ -15,7 +15,7 @@ namespace {
 
 using namespace limber;
 
-constexpr std::size_t kMostEdits = 20;  // so that no input takes seconds
+constexpr std::size_t kMaxEdits = 20;  // so that no input takes seconds
 
 void useLimits(const Skeleton& skeleton, const JointLimits& limits) {
   const std::string written = limitsToJson(limits, skeleton);
@@ -32,7 +32,7 @@ void usePoses(const Skeleton& skeleton, const std::vector<NamedPose>& poses) {
   options.ik.restarts = 1;
   for (const NamedPose& named : poses) {
     const PoseEdits& edits = named.edits;
-    if (edits.turns.size() + edits.moves.size() + edits.reaches.size() > kMostEdits) continue;
+    if (edits.turns.size() + edits.moves.size() + edits.reaches.size() > kMaxEdits) continue;
     Pose pose = restPose(skeleton);
     try {
       editPose(skeleton, pose, edits, nullptr, options);

@@ -7,7 +7,7 @@
 
 namespace {
 
-constexpr std::size_t kMostJoints = 400;
+constexpr std::size_t kMaxJoints = 400;
 
 // Each joint takes 14 bytes: its parent (a joint before it, or none), a place, and a letter of its name.
 limber::Skeleton skeletonFrom(const std::uint8_t* data, std::size_t size) {
@@ -15,14 +15,14 @@ limber::Skeleton skeletonFrom(const std::uint8_t* data, std::size_t size) {
   constexpr std::size_t kStride = 14;
   constexpr const char* kWords[] = {"Hips",  "Spine", "LeftArm", "RightArm", "leg.L",
                                     "leg.R", "Head",  "tail",    "joint",    "wing_l"};
-  for (std::size_t at = 0; at + kStride <= size && skeleton.joints.size() < kMostJoints; at += kStride) {
+  for (std::size_t at = 0; at + kStride <= size && skeleton.joints.size() < kMaxJoints; at += kStride) {
     limber::Joint joint;
     const auto number = skeleton.jointCount();
     if (number > 0 && data[at] != 0) joint.parent = static_cast<limber::Index>(data[at] * 7 + data[at + 1]) % number;
-    float place[3];
-    std::memcpy(place, data + at + 2, sizeof place);
-    joint.rest.translation = {static_cast<double>(place[0]), static_cast<double>(place[1]),
-                              static_cast<double>(place[2])};
+    float position[3];
+    std::memcpy(position, data + at + 2, sizeof position);
+    joint.rest.translation = {static_cast<double>(position[0]), static_cast<double>(position[1]),
+                              static_cast<double>(position[2])};
     joint.name = std::string(kWords[data[at + 1] % 10]) + std::to_string(number);
     skeleton.joints.push_back(std::move(joint));
   }

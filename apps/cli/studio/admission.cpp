@@ -54,13 +54,13 @@ std::string makeSecret(std::size_t bytes) {
     throw Error(ErrorCode::kUnsupported, "the system gives no random numbers");
   }
   std::string secret;
-  unsigned held = 0;
-  int held_bits = 0;
+  unsigned bits = 0;
+  int bitCount = 0;
   for (std::size_t i = 0; i < bytes; ++i) {
-    held = held << 8 | random[i];
-    for (held_bits += 8; held_bits >= 6; held_bits -= 6) secret += kLetters[held >> (held_bits - 6) & 63];
+    bits = bits << 8 | random[i];
+    for (bitCount += 8; bitCount >= 6; bitCount -= 6) secret += kLetters[bits >> (bitCount - 6) & 63];
   }
-  if (held_bits > 0) secret += kLetters[held << (6 - held_bits) & 63];
+  if (bitCount > 0) secret += kLetters[bits << (6 - bitCount) & 63];
   return secret;
 }
 

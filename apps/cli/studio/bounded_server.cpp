@@ -23,15 +23,15 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
-constexpr std::size_t kMostRequestBytes = 16 * 1024;  // line and headers; a browser's have one or two kB
-constexpr std::size_t kMostWritten = 16 * 1024;       // at once: a record of TLS
-constexpr auto kMostRequestTime = 10s;                // for all of a request, the handshake before it included
-constexpr auto kMostWriteTime = 10s;                  // for one piece
-constexpr auto kMostFarewell = 1s;                    // for what comes behind a last request
-constexpr std::size_t kMostUnread = 256 * 1024;       // of that
-constexpr auto kKeptAlive = 5s;                       // between two requests
-constexpr int kMostRequests = 200;                    // on one connection
-constexpr int kLook = 100;                            // milliseconds between two looks whether the server stops
+constexpr std::size_t kMaxRequestBytes = 16 * 1024;  // line and headers; a browser's have one or two kB
+constexpr std::size_t kMaxWritten = 16 * 1024;       // at once: a record of TLS
+constexpr auto kMaxRequestTime = 10s;                // for all of a request, the handshake before it included
+constexpr auto kMaxWriteTime = 10s;                  // for one piece
+constexpr auto kMaxGoodbyeTime = 1s;                 // for what comes behind a last request
+constexpr std::size_t kMaxUnread = 256 * 1024;       // of that
+constexpr auto kKeptAlive = 5s;                      // between two requests
+constexpr int kMaxRequests = 200;                    // on one connection
+constexpr int kLook = 100;                           // milliseconds between two looks whether the server stops
 
 // A socket that does not block, in the form that the library reads and writes.
 class Connection : public httplib::Stream {
@@ -40,17 +40,17 @@ class Connection : public httplib::Stream {
       : socket_(socket), tls_(tls), listening_(listening) {}
 
   bool shakeHands() {
-    deadline_ = Clock::now() + kMostRequestTime;
+    deadline_ = Clock::now() + kMaxRequestTime;
     return !tls_ || carryOut([&] { return SSL_accept(tls_); }, 0) > 0;
   }
 
   // Whether the first byte of a further request has come.
   bool requestComes() {
-    left_ = kMostRequestBytes;
+    left_ = kMaxRequestBytes;
     answered_ = false;
     deadline_ = Clock::now() + kKeptAlive;
     if (at_ == end_ && !fill()) return false;
-    deadline_ = Clock::now() + kMostRequestTime;
+    deadline_ = Clock::now() + kMaxRequestTime;
     return true;
   }
 
@@ -64,9 +64,9 @@ class Connection : public httplib::Stream {
     if (tls_) SSL_shutdown(tls_);
     if (!last_) return;
     shutdown(socket_, SHUT_WR);
-    deadline_ = Clock::now() + kMostFarewell;
+    deadline_ = Clock::now() + kMaxGoodbyeTime;
     std::size_t unread = 0;
-    while (unread < kMostUnread && fill()) unread += end_;
+    while (unread < kMaxUnread && fill()) unread += end_;
   }
 
   ssize_t read(char* to, std::size_t size) override {
@@ -80,8 +80,8 @@ class Connection : public httplib::Stream {
 
   ssize_t write(const char* from, std::size_t size) override {
     if (!std::exchange(answered_, true) && !isSuccess({from, size})) last_ = true;
-    deadline_ = Clock::now() + kMostWriteTime;
-    const int piece = static_cast<int>(std::min(size, kMostWritten));
+    deadline_ = Clock::now() + kMaxWriteTime;
+    const int piece = static_cast<int>(std::min(size, kMaxWritten));
     return carryOut(
         [&] {
           return tls_ ? SSL_write(tls_, from, piece)
@@ -223,13 +223,13 @@ bool BoundedServer::process_and_close_socket(socket_t socket) {
   if (tls || !tls_) {
     Connection connection(socket, tls.get(), svr_sock_);
     bool open = connection.shakeHands();
-    for (int request = 1; open && request <= kMostRequests && connection.requestComes(); ++request) {
+    for (int request = 1; open && request <= kMaxRequests && connection.requestComes(); ++request) {
       bool asked_to_close = false;
       const auto look = [&](httplib::Request& asked) {
         takeNoRanges(asked);
         if (hasBody(asked)) connection.makeLast();
       };
-      open = process_request(connection, request == kMostRequests, asked_to_close, look) && !asked_to_close &&
+      open = process_request(connection, request == kMaxRequests, asked_to_close, look) && !asked_to_close &&
              !connection.isLast();
       answered = true;
     }

@@ -24,10 +24,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr long kDay = 24 * 60 * 60;         // seconds
-constexpr long kValidity = 365 * kDay;      // iOS takes up to 825 days
-constexpr long kEarlier = kDay;             // a phone's clock may be behind
-constexpr std::size_t kMostBytes = 10'000;  // of the file: far more than it has
+constexpr long kDay = 24 * 60 * 60;        // seconds
+constexpr long kValidity = 365 * kDay;     // iOS takes up to 825 days
+constexpr long kEarlier = kDay;            // a phone's clock may be behind
+constexpr std::size_t kMaxBytes = 10'000;  // of the file: far more than it has
 
 void check(bool done, const char* what) {
   if (!done) throw Error(ErrorCode::kUnsupported, fmt::format("the certificate cannot be made: {}", what));
@@ -75,7 +75,7 @@ std::optional<Certificate> readCertificate(const fs::path& path) {
   } catch (const Error&) {
     return std::nullopt;
   }
-  if (bytes.size() > kMostBytes) return std::nullopt;
+  if (bytes.size() > kMaxBytes) return std::nullopt;
   const Bio source(BIO_new_mem_buf(bytes.data(), static_cast<int>(bytes.size())), BIO_free);
   if (!source) return std::nullopt;
   EVP_PKEY* key = PEM_read_bio_PrivateKey(source.get(), nullptr, nullptr, nullptr);

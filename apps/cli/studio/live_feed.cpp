@@ -4,7 +4,7 @@ namespace limber::cli {
 
 namespace {
 
-constexpr int kMostPages = 4;
+constexpr int kMaxPages = 4;
 
 std::string eventOf(const char* name, const std::string& text) {
   return std::string("event: ") + name + "\ndata: " + text + "\n\n";
@@ -39,11 +39,11 @@ std::string LiveFeed::next(Seen& seen, std::chrono::milliseconds longest) {
   return events;
 }
 
-std::optional<LiveFeed::Place> LiveFeed::enter() {
+std::optional<LiveFeed::Listener> LiveFeed::enter() {
   const std::lock_guard lock(mutex_);
-  if (pages_ == kMostPages) return std::nullopt;
+  if (pages_ == kMaxPages) return std::nullopt;
   ++pages_;
-  return Place(*this);
+  return Listener(*this);
 }
 
 void LiveFeed::leave() {

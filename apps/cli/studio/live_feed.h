@@ -27,19 +27,19 @@ class LiveFeed {
   std::string next(Seen& seen, std::chrono::milliseconds longest);
 
   // One of the pages that may listen at once; nothing where there are as many as may be.
-  class Place {
+  class Listener {
    public:
-    explicit Place(LiveFeed& feed) : feed_(&feed) {}
-    Place(Place&& other) noexcept : feed_(std::exchange(other.feed_, nullptr)) {}
-    Place& operator=(Place&&) = delete;
-    ~Place() {
+    explicit Listener(LiveFeed& feed) : feed_(&feed) {}
+    Listener(Listener&& other) noexcept : feed_(std::exchange(other.feed_, nullptr)) {}
+    Listener& operator=(Listener&&) = delete;
+    ~Listener() {
       if (feed_) feed_->leave();
     }
 
    private:
     LiveFeed* feed_;
   };
-  std::optional<Place> enter();
+  std::optional<Listener> enter();
 
  private:
   void leave();

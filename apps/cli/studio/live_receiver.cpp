@@ -24,12 +24,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kMostPacket = 16 * 1024;           // bytes; VMC's have one or two kB
-constexpr std::size_t kMostPackets = 20'000;             // a second
-constexpr int kMostAtOnce = 1000;                        // packets, before there is a look at other things
-constexpr std::size_t kMostBvhBytes = 16 * 1024 * 1024;  // a second
-constexpr double kFrameSeconds = 1.0 / 250;              // between two frames that are handed on
-constexpr int kLook = 50;                                // milliseconds between two looks whether it is over
+constexpr std::size_t kMaxPacket = 16 * 1024;           // bytes; VMC's have one or two kB
+constexpr std::size_t kMaxPackets = 20'000;             // a second
+constexpr int kMaxAtOnce = 1000;                        // packets, before there is a look at other things
+constexpr std::size_t kMaxBvhBytes = 16 * 1024 * 1024;  // a second
+constexpr double kFrameSeconds = 1.0 / 250;             // between two frames that are handed on
+constexpr int kLook = 50;                               // milliseconds between two looks whether it is over
 
 // Counts how much comes within each second.
 class PerSecond {
@@ -93,10 +93,10 @@ class VmcReceiver {
   VmcReceiver(int socket, LiveFeed& feed) : socket_(socket), sender_(feed) {}
 
   void receive(double seconds) {
-    for (int packet = 0; packet < kMostAtOnce; ++packet) {
+    for (int packet = 0; packet < kMaxAtOnce; ++packet) {
       const ssize_t size = recv(socket_, buffer_.data(), buffer_.size(), MSG_TRUNC);
       if (size < 0) return;
-      if (static_cast<std::size_t>(size) > kMostPacket || rate_.isSpent(seconds)) continue;
+      if (static_cast<std::size_t>(size) > kMaxPacket || rate_.isSpent(seconds)) continue;
       rate_.add(1);
       stream_.take({buffer_.data(), static_cast<std::size_t>(size)}, seconds);
     }
@@ -115,9 +115,9 @@ class VmcReceiver {
   int socket_;
   LiveSender sender_;
   VmcStream stream_;
-  PerSecond rate_{kMostPackets};
+  PerSecond rate_{kMaxPackets};
   std::size_t handed_ = 0;
-  std::array<std::uint8_t, kMostPacket + 1> buffer_;
+  std::array<std::uint8_t, kMaxPacket + 1> buffer_;
 };
 
 class BvhReceiver {
@@ -171,7 +171,7 @@ class BvhReceiver {
   LiveSender sender_;
   const std::function<void(const std::string&)>& tell_;
   std::optional<BvhStream> stream_;
-  PerSecond rate_{kMostBvhBytes};
+  PerSecond rate_{kMaxBvhBytes};
   std::size_t handed_ = 0;
   std::array<char, 16 * 1024> buffer_;
 };

@@ -83,10 +83,10 @@ TEST(LiveFeed, GivesTheLatestOnce) {
 
 TEST(LiveFeed, HasRoomForAFewPages) {
   LiveFeed feed;
-  std::vector<LiveFeed::Place> places;
-  while (auto place = feed.enter()) places.push_back(std::move(*place));
-  EXPECT_EQ(places.size(), 4u);
-  places.pop_back();
+  std::vector<LiveFeed::Listener> listeners;
+  while (auto listener = feed.enter()) listeners.push_back(std::move(*listener));
+  EXPECT_EQ(listeners.size(), 4u);
+  listeners.pop_back();
   EXPECT_TRUE(feed.enter());
 }
 
@@ -116,8 +116,8 @@ const std::string kBvh =
 
 TEST(LiveReceiver, HandsOnABvh) {
   LiveFeed feed;
-  std::promise<std::string> told;
-  const LiveReceiver receiver({0, 0}, feed, [&](const std::string& what) { told.set_value(what); });
+  std::promise<std::string> reported;
+  const LiveReceiver receiver({0, 0}, feed, [&](const std::string& what) { reported.set_value(what); });
   LiveFeed::Seen seen;
   {
     const Sender sender(SOCK_STREAM, receiver.ports().bvh);
@@ -129,7 +129,7 @@ TEST(LiveReceiver, HandsOnABvh) {
   const Sender page(SOCK_STREAM, receiver.ports().bvh);  // the next one, which is none
   page.send(std::string("GET / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n") + kBvh);
   EXPECT_TRUE(page.isOver());
-  EXPECT_THAT(told.get_future().get(), HasSubstr("line 1"));
+  EXPECT_THAT(reported.get_future().get(), HasSubstr("line 1"));
   EXPECT_EQ(feed.next(seen, 20ms), "");
 }
 

@@ -22,7 +22,7 @@ namespace limber::cli {
 namespace {
 
 constexpr const char* kLoopback = "127.0.0.1";
-constexpr std::size_t kMostConnections = 64;  // a browser opens up to six
+constexpr std::size_t kMaxConnections = 64;   // a browser opens up to six
 constexpr std::string_view kJoin = "/join/";  // the token follows
 
 // What the page needs and no more: it can send nothing away. Only a document that was asked for with the address of a
@@ -219,15 +219,15 @@ void runUntilInterrupted(httplib::Server& server, const std::function<void()>& l
 
 // A page that listens gets events until it goes or the server stops.
 void answerWithLive(httplib::Server& server, LiveFeed& feed, httplib::Response& response) {
-  std::optional<LiveFeed::Place> free = feed.enter();
+  std::optional<LiveFeed::Listener> free = feed.enter();
   if (!free) {
     response.status = 503;
     return;
   }
-  const auto place = std::make_shared<LiveFeed::Place>(std::move(*free));
+  const auto listener = std::make_shared<LiveFeed::Listener>(std::move(*free));
   const auto seen = std::make_shared<LiveFeed::Seen>();
   response.set_chunked_content_provider(
-      "text/event-stream", [&server, &feed, place, seen](std::size_t, httplib::DataSink& sink) {
+      "text/event-stream", [&server, &feed, listener, seen](std::size_t, httplib::DataSink& sink) {
         constexpr std::chrono::milliseconds kLook(100);
         const std::string events = feed.next(*seen, kLook);
         if (!server.is_running()) return false;
@@ -237,7 +237,7 @@ void answerWithLive(httplib::Server& server, LiveFeed& feed, httplib::Response& 
 }
 
 void serveThisMachine(const ServeOptions& options, const ServeEvents& events) {
-  BoundedServer server(nullptr, kMostConnections);
+  BoundedServer server(nullptr, kMaxConnections);
   setHeaders(server);
   const Site site{"http", {kLoopback, "localhost"}};
   server.set_pre_routing_handler([&](const httplib::Request& request, httplib::Response& response) {
@@ -273,7 +273,7 @@ void serveNetwork(const ServeOptions& options, const ServeEvents& events) {
   const std::string address = addressToServe(*options.host), name = inAddressBar(address);
   const Certificate certificate = certificateAt(certificatePath(), address, networkAddresses());
   const TlsContext tls = tlsContext(certificate);
-  BoundedServer server(tls.get(), kMostConnections);
+  BoundedServer server(tls.get(), kMaxConnections);
   setHeaders(server);
   const int port = bindTo(server, address, options.port);
   const Site site{"https", {name}};

@@ -20,7 +20,7 @@ namespace limber {
 namespace {
 
 // Of a body in T-pose, of its left half.
-enum class Way { kUp, kDown, kFront, kBack, kSide, kThumb };
+enum class Direction { kUp, kDown, kFront, kBack, kSide, kThumb };
 
 enum class BoneKind {
   kSpine,
@@ -39,26 +39,26 @@ enum class BoneKind {
 
 struct KindAxes {
   BoneKind kind;
-  Way bone;        // along it
+  Direction bone;  // along it
   int alongYAxis;  // the axis that tells the roll where y lies along the bone, and its way
-  Way alongYWay;
-  double unrealX;  // 1: x along the bone, -1: against it, 0: straight up, whichever way the bone goes
-  Way unrealY;     // where y points
+  Direction alongYDirection;
+  double unrealX;     // 1: x along the bone, -1: against it, 0: straight up, whichever way the bone goes
+  Direction unrealY;  // where y points
 };
 
 constexpr std::array kKindAxes = {
-    KindAxes{BoneKind::kSpine, Way::kUp, 2, Way::kFront, 1, Way::kBack},
-    KindAxes{BoneKind::kShoulder, Way::kSide, 2, Way::kUp, 1, Way::kBack},
-    KindAxes{BoneKind::kUpperArm, Way::kSide, 2, Way::kDown, 1, Way::kBack},
-    KindAxes{BoneKind::kLowerArm, Way::kSide, 2, Way::kFront, 1, Way::kBack},
-    KindAxes{BoneKind::kHand, Way::kSide, 2, Way::kDown, 1, Way::kUp},
-    KindAxes{BoneKind::kThumb, Way::kThumb, 0, Way::kUp, 1, Way::kUp},
-    KindAxes{BoneKind::kUpperLeg, Way::kDown, 2, Way::kFront, -1, Way::kFront},
-    KindAxes{BoneKind::kLowerLeg, Way::kDown, 2, Way::kBack, -1, Way::kFront},
-    KindAxes{BoneKind::kFoot, Way::kFront, 2, Way::kUp, 0, Way::kFront},
-    KindAxes{BoneKind::kToes, Way::kFront, 2, Way::kDown, 1, Way::kDown},
-    KindAxes{BoneKind::kEye, Way::kFront, 2, Way::kDown, 1, Way::kUp},
-    KindAxes{BoneKind::kJaw, Way::kFront, 2, Way::kUp, 1, Way::kUp},
+    KindAxes{BoneKind::kSpine, Direction::kUp, 2, Direction::kFront, 1, Direction::kBack},
+    KindAxes{BoneKind::kShoulder, Direction::kSide, 2, Direction::kUp, 1, Direction::kBack},
+    KindAxes{BoneKind::kUpperArm, Direction::kSide, 2, Direction::kDown, 1, Direction::kBack},
+    KindAxes{BoneKind::kLowerArm, Direction::kSide, 2, Direction::kFront, 1, Direction::kBack},
+    KindAxes{BoneKind::kHand, Direction::kSide, 2, Direction::kDown, 1, Direction::kUp},
+    KindAxes{BoneKind::kThumb, Direction::kThumb, 0, Direction::kUp, 1, Direction::kUp},
+    KindAxes{BoneKind::kUpperLeg, Direction::kDown, 2, Direction::kFront, -1, Direction::kFront},
+    KindAxes{BoneKind::kLowerLeg, Direction::kDown, 2, Direction::kBack, -1, Direction::kFront},
+    KindAxes{BoneKind::kFoot, Direction::kFront, 2, Direction::kUp, 0, Direction::kFront},
+    KindAxes{BoneKind::kToes, Direction::kFront, 2, Direction::kDown, 1, Direction::kDown},
+    KindAxes{BoneKind::kEye, Direction::kFront, 2, Direction::kDown, 1, Direction::kUp},
+    KindAxes{BoneKind::kJaw, Direction::kFront, 2, Direction::kUp, 1, Direction::kUp},
 };
 
 struct BoneKindName {
@@ -98,7 +98,7 @@ class BoneTurner {
   }
 
  private:
-  Vec3 place(Index joint) const { return globals_[joint].translation(); }
+  Vec3 position(Index joint) const { return globals_[joint].translation(); }
 
   std::optional<Index> nextInPart(Index joint) const {
     if (!anatomy_.partOf[joint]) return std::nullopt;
@@ -115,11 +115,12 @@ class BoneTurner {
   void findDirections() {
     std::vector<Vec3> sum(skeleton_.joints.size(), Vec3::Zero());
     for (Index j = 0; j < skeleton_.jointCount(); ++j) {
-      if (const std::optional<Index> parent = skeleton_.joints[j].parent) sum[*parent] += place(j) - place(*parent);
+      if (const std::optional<Index> parent = skeleton_.joints[j].parent)
+        sum[*parent] += position(j) - position(*parent);
     }
     for (Index j = 0; j < skeleton_.jointCount(); ++j) {
       const std::optional<Index> next = nextInPart(j);
-      const Vec3 bone = next ? Vec3(place(*next) - place(j)) : sum[j];
+      const Vec3 bone = next ? Vec3(position(*next) - position(j)) : sum[j];
       const std::optional<Index> parent = skeleton_.joints[j].parent;
       if (bone.norm() > kNoBone * anatomy_.size) {
         directions_.push_back(bone.normalized());
@@ -168,21 +169,21 @@ class BoneTurner {
     return anatomy_.partOf[joint] ? anatomy_.parts[*anatomy_.partOf[joint]].side : Side::kCenter;
   }
 
-  Vec3 wayOf(Way way, Side side) const {
+  Vec3 directionOf(Direction direction, Side side) const {
     const Axes& body = anatomy_.axes;
     const Vec3 outward = side == Side::kRight ? Vec3(-body.left()) : body.left();
-    switch (way) {
-      case Way::kUp:
+    switch (direction) {
+      case Direction::kUp:
         return body.up;
-      case Way::kDown:
+      case Direction::kDown:
         return -body.up;
-      case Way::kFront:
+      case Direction::kFront:
         return body.front;
-      case Way::kBack:
+      case Direction::kBack:
         return -body.front;
-      case Way::kSide:
+      case Direction::kSide:
         return outward;
-      case Way::kThumb:
+      case Direction::kThumb:
         break;
     }
     return (std::sqrt(2.0) * outward + body.front).normalized();  // as in Godot's reference pose
@@ -191,7 +192,7 @@ class BoneTurner {
   // The least turn that brings the bone from where it is in T-pose to where it is.
   Quat bring(const KindAxes& kind, Index joint) const {
     const Vec3 to = directions_[joint];
-    Vec3 from = wayOf(kind.bone, sideOf(joint));
+    Vec3 from = directionOf(kind.bone, sideOf(joint));
     Quat first = Quat::Identity();
     if (kind.kind == BoneKind::kSpine && from.dot(to) < 0) {  // tails, hair: by a half turn about the body's side
       first = Quat(Eigen::AngleAxisd(kPi, anatomy_.axes.left()));
@@ -217,18 +218,19 @@ class BoneTurner {
   Quat alongYTurn(Index joint) const {
     const KindAxes& kind = kindOf(joint);
     const Side side = sideOf(joint);
-    return bring(kind, joint) * turnOf(1, wayOf(kind.bone, side), kind.alongYAxis, wayOf(kind.alongYWay, side));
+    return bring(kind, joint) *
+           turnOf(1, directionOf(kind.bone, side), kind.alongYAxis, directionOf(kind.alongYDirection, side));
   }
 
   Quat unrealTurn(Index joint) const {
     const KindAxes& kind = kindOf(joint);
     const Side side = sideOf(joint);
     const double inverted = side == Side::kRight ? -1 : 1;
-    const Vec3 y = inverted * wayOf(kind.unrealY, side);
+    const Vec3 y = inverted * directionOf(kind.unrealY, side);
     const auto bone = boneOf_.find(joint);
     const bool isPelvis = bone != boneOf_.end() && bone->second == "hips";
     if (kind.unrealX == 0 || isPelvis) return turnOf(0, inverted * anatomy_.axes.up, 1, y);
-    return bring(kind, joint) * turnOf(0, inverted * kind.unrealX * wayOf(kind.bone, side), 1, y);
+    return bring(kind, joint) * turnOf(0, inverted * kind.unrealX * directionOf(kind.bone, side), 1, y);
   }
 
   const Skeleton& skeleton_;

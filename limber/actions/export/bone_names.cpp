@@ -15,7 +15,7 @@ namespace limber {
 namespace {
 
 // Joints of a spine and of a neck that a program numbers: a longer one is not taken for its own.
-constexpr std::size_t kMostCounted = 9;
+constexpr std::size_t kMaxCounted = 9;
 // MetaHuman's spine: the last joint carries neck and clavicles.
 constexpr std::size_t kMetaHumanSpine = 5;
 
@@ -64,13 +64,13 @@ class Column {
 
   // Hips, spine, neck and head are one list.
   bool countsToHead() const { return !center(JointRole::kSpineToHead, 0).empty(); }
-  bool countsTrunk() const { return countsToHead() || !center(JointRole::kTrunk, kMostCounted).empty(); }
+  bool countsTrunk() const { return countsToHead() || !center(JointRole::kTrunk, kMaxCounted).empty(); }
 
   // The lists that the program counts, each from its first name on.
   std::vector<std::vector<std::string>> counted() const {
     if (!countsTrunk()) return {};
-    if (countsToHead()) return {list(JointRole::kSpineToHead, 2 * kMostCounted)};
-    return {list(JointRole::kTrunk, kMostCounted), list(JointRole::kNeck, kMostCounted)};
+    if (countsToHead()) return {list(JointRole::kSpineToHead, 2 * kMaxCounted)};
+    return {list(JointRole::kTrunk, kMaxCounted), list(JointRole::kNeck, kMaxCounted)};
   }
 
   std::vector<std::string> list(JointRole role, std::size_t count) const {
@@ -148,7 +148,7 @@ std::vector<std::string> trunkNames(std::size_t spineJoints, std::size_t neckJoi
 std::set<std::string> ownNames(BoneNames column, NameStyle style) {
   std::set<std::string> names;
   forEachRole([&, own = Column(column)](JointRole role, Side side) {
-    const std::size_t count = role == JointRole::kSpineToHead ? 2 * kMostCounted : kMostCounted;
+    const std::size_t count = role == JointRole::kSpineToHead ? 2 * kMaxCounted : kMaxCounted;
     for (std::string& name : own.all(role, side, count)) names.insert(std::move(name));
   });
   for (const std::string_view bone : humanoidBones()) names.insert(*boneName(bone, column, style));

@@ -187,7 +187,7 @@ class TargetMaker {
     const SceneGraph graph = readSceneGraph(asset_.document);
     rootScale_ = evenScaleOf(graph.world[*root_]);
     const std::optional<Index> parent = graph.parent[*root_];
-    if (!parent || !standsStill(graph, *parent) || !isEven(graph.world[*parent])) return;
+    if (!parent || !isStationary(graph, *parent) || !isEven(graph.world[*parent])) return;
     aboveRoot_ = graph.world[*parent];
     Index top = *parent;
     while (graph.parent[top]) top = *graph.parent[top];
@@ -197,7 +197,7 @@ class TargetMaker {
     }
   }
 
-  bool standsStill(const SceneGraph& graph, Index node) const {
+  bool isStationary(const SceneGraph& graph, Index node) const {
     const std::vector<bool> animated = animatedNodes(asset_.document);
     for (std::optional<Index> n = node; n; n = graph.parent[*n]) {
       if (animated[*n]) return false;

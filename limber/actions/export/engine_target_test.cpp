@@ -248,7 +248,7 @@ TEST(ToTarget, NamesTheTargetsThatThereAre) {
 Asset person() {
   struct Row {
     const char *name, *parent;
-    Vec3 place;
+    Vec3 position;
   };
   std::vector<Row> rows = {{"hips", "", {0, 1, 0}},
                            {"spine", "hips", {0, 1.1, 0}},
@@ -274,30 +274,30 @@ Asset person() {
   SceneBuilder builder;
   std::vector<std::string> names;
   std::vector<std::optional<Index>> parents;
-  std::vector<Vec3> places;
-  const auto add = [&](const std::string& name, const std::string& parent, const Vec3& place) {
+  std::vector<Vec3> positions;
+  const auto add = [&](const std::string& name, const std::string& parent, const Vec3& position) {
     const auto found = std::find(names.begin(), names.end(), parent);
     parents.push_back(found == names.end() ? std::nullopt : std::optional(static_cast<Index>(found - names.begin())));
     names.push_back(name);
-    places.push_back(place);
+    positions.push_back(position);
   };
-  for (const Row& row : rows) add(row.name, row.parent, row.place);
+  for (const Row& row : rows) add(row.name, row.parent, row.position);
   for (const std::string side : {"left", "right"}) {
     for (std::size_t i = 0; i < kLimbs.size(); ++i) {
-      Vec3 place = kLimbs[i].second;
-      if (side == "right") place.x() = -place.x();
+      Vec3 position = kLimbs[i].second;
+      if (side == "right") position.x() = -position.x();
       const std::string parent = kParents[i];
       const bool central = parent == "hips" || parent == "upperChest" || parent == "head";
-      add(side + kLimbs[i].first, central ? parent : side + parent, place);
+      add(side + kLimbs[i].first, central ? parent : side + parent, position);
     }
   }
   std::vector<Index> joints;
   std::vector<Affine> inverse;
   for (std::size_t j = 0; j < names.size(); ++j) {
-    const Vec3 above = parents[j] ? places[*parents[j]] : Vec3::Zero();
-    const Vec3 local = places[j] - above;
+    const Vec3 above = parents[j] ? positions[*parents[j]] : Vec3::Zero();
+    const Vec3 local = positions[j] - above;
     joints.push_back(builder.addNode({{"name", names[j]}, {"translation", {local.x(), local.y(), local.z()}}}));
-    inverse.push_back(testing::translation(-places[j].x(), -places[j].y(), -places[j].z()));
+    inverse.push_back(testing::translation(-positions[j].x(), -positions[j].y(), -positions[j].z()));
     if (parents[j]) builder.node(joints[*parents[j]]).children.push_back(joints[j]);
   }
   const Index mesh = builder.addTetrahedron();

@@ -56,8 +56,8 @@ NameParts partsWithCenter(const std::string& name) {
   const bool isWord = at != std::string::npos && !isLetterAt(at + kCenter.size()) && (at == 0 || !isLetterAt(at - 1));
   if (!isWord || std::find(parts.words.begin(), parts.words.end(), kCenter) != parts.words.end()) return parts;
   const std::size_t before = at == 0 ? 0 : partsOfName(name.substr(0, at)).words.size();
-  const auto place = static_cast<std::ptrdiff_t>(std::min(before, parts.words.size()));
-  parts.words.insert(parts.words.begin() + place, std::string(kCenter));
+  const auto index = static_cast<std::ptrdiff_t>(std::min(before, parts.words.size()));
+  parts.words.insert(parts.words.begin() + index, std::string(kCenter));
   return parts;
 }
 
@@ -210,13 +210,13 @@ class TargetNamer {
   void nameLimb(const Part& part) {
     const Index pairs = anatomy_.pairsOf(part.kind);
     const std::string kind(nameOf(part.kind));
-    std::string place, number;
-    if (pairs == 2) place = part.pair == 0 ? "front" : "hind";
+    std::string location, number;
+    if (pairs == 2) location = part.pair == 0 ? "front" : "hind";
     if (pairs > 2 || (pairs == 1 && part.pair > 0)) number = std::to_string(part.pair + 1);
     const bool isArm = part.kind == PartKind::kArm;
     const auto name = [&](std::optional<Index> joint, std::initializer_list<std::string> words) {
       if (!joint) return;
-      std::vector<std::string> all = {place};
+      std::vector<std::string> all = {location};
       all.insert(all.end(), words);
       all.push_back(number);
       want(*joint, spellName(spellStem(all, style_), part.side, style_));

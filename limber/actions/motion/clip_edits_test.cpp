@@ -43,11 +43,11 @@ struct Shown {
     const std::vector<Affine> skin = skinTransforms(skeleton.skeleton, pose);
     std::vector<Vec3> result;
     for (std::size_t v = 0; v < geometry.positions.size(); v += stride) {
-      Vec3 place = Vec3::Zero();
+      Vec3 point = Vec3::Zero();
       for (Index s = 0; s < weights.slots; ++s) {
-        place += weights.weightsOf(v)[s] * (skin[weights.jointsOf(v)[s]] * geometry.positions[v].cast<double>());
+        point += weights.weightsOf(v)[s] * (skin[weights.jointsOf(v)[s]] * geometry.positions[v].cast<double>());
       }
-      result.push_back(place);
+      result.push_back(point);
     }
     return result;
   }

@@ -93,7 +93,7 @@ CharacterClips retargetedClips(const Character& character, const Motion& given, 
   const SkeletonMap map = mapFor(motion, source, character.reading(), options);
   warnOfDoubts(map, motion, target, warnings);
   RetargetOptions retarget = options.retarget;
-  retarget.characterStands = !isSkeletonAlone(asset);
+  retarget.characterOnGround = !isSkeletonAlone(asset);
   if (character.hasRig()) retarget.skin = bodySkinOf(character, warnings);
   CharacterClips result;
   for (std::size_t c = 0; c < motion.clips.size(); ++c) {

@@ -115,11 +115,11 @@ TEST(RetargetAsset, ScalesThatMoveAreAWarning) {
     const std::vector<RetargetedClip> clips = retargetOnto(character, Character(character), motion, {});
     ASSERT_EQ(clips.size(), 1u);
     EXPECT_EQ(limber::testing::countOf(character.warnings, "motion-scales"), moves ? 2u : 0u) << "joints";
-    std::vector<std::string> places;
+    std::vector<std::string> locations;
     for (const Warning& warning : character.warnings.items()) {
-      if (warning.kind == "motion-scales") places.push_back(warning.where);
+      if (warning.kind == "motion-scales") locations.push_back(warning.where);
     }
-    EXPECT_EQ(places, moves ? std::vector<std::string>{"breathe: chest"} : std::vector<std::string>());
+    EXPECT_EQ(locations, moves ? std::vector<std::string>{"breathe: chest"} : std::vector<std::string>());
   }
 }
 

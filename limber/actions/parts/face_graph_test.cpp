@@ -116,13 +116,13 @@ TEST(FaceGraph, WaysOverAnEdgeAreStraightOnceUnfolded) {
   for (const double bend : {0.0, 30.0, 90.0}) {
     const TriMesh mesh = bentStrip(bend, 0);
     const FaceGraph graph = faceGraph(mesh);
-    std::vector<double> ways;
+    std::vector<double> distances;
     for (const FaceArc& arc : graph.arcs) {
-      if (arc.length > 1.2) ways.push_back(arc.distance);  // the diagonals, which are flat
+      if (arc.length > 1.2) distances.push_back(arc.distance);  // the diagonals, which are flat
     }
-    ASSERT_EQ(ways.size(), 3u);
-    EXPECT_NEAR(ways[0], ways[1], 1e-6);
-    EXPECT_NEAR(ways[1], ways[2], 1e-6);
+    ASSERT_EQ(distances.size(), 3u);
+    EXPECT_NEAR(distances[0], distances[1], 1e-6);
+    EXPECT_NEAR(distances[1], distances[2], 1e-6);
   }
 }
 

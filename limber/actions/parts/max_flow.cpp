@@ -31,32 +31,32 @@ bool MaxFlow::findLevels(Index source, Index sink) {
 double MaxFlow::blockingFlow(Index source, Index sink) {
   double flow = 0;
   currentArc_ = firstArc_;
-  std::vector<Index> way;  // arcs from the source
+  std::vector<Index> path;  // arcs from the source
   for (Index node = source;;) {
     if (node == sink) {
-      double room = arcs_[way.front()].room;
-      for (const Index a : way) room = std::min(room, arcs_[a].room);
-      std::size_t full = way.size();
-      for (std::size_t i = way.size(); i-- > 0;) {
-        arcs_[way[i]].room -= room;
-        arcs_[way[i] ^ 1].room += room;
-        if (arcs_[way[i]].room <= 0) full = i;
+      double room = arcs_[path.front()].room;
+      for (const Index a : path) room = std::min(room, arcs_[a].room);
+      std::size_t full = path.size();
+      for (std::size_t i = path.size(); i-- > 0;) {
+        arcs_[path[i]].room -= room;
+        arcs_[path[i] ^ 1].room += room;
+        if (arcs_[path[i]].room <= 0) full = i;
       }
       flow += room;
-      node = arcs_[way[full] ^ 1].to;
-      way.resize(full);
+      node = arcs_[path[full] ^ 1].to;
+      path.resize(full);
       continue;
     }
     Index& a = currentArc_[node];
     while (a != kNoIndex && (arcs_[a].room <= 0 || level_[arcs_[a].to] != level_[node] + 1)) a = arcs_[a].next;
     if (a != kNoIndex) {
-      way.push_back(a);
+      path.push_back(a);
       node = arcs_[a].to;
-    } else if (way.empty()) {
+    } else if (path.empty()) {
       return flow;
     } else {
-      node = arcs_[way.back() ^ 1].to;
-      way.pop_back();
+      node = arcs_[path.back() ^ 1].to;
+      path.pop_back();
       currentArc_[node] = arcs_[currentArc_[node]].next;
     }
   }

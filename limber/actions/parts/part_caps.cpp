@@ -53,20 +53,20 @@ std::vector<PartEdges> collectEdges(const TriMesh& mesh, std::span<const Index> 
 std::vector<std::vector<Index>> simpleLoops(std::span<const Edge> edges, std::size_t& openEdges) {
   std::vector<std::vector<Index>> loops;
   std::vector<bool> used(edges.size(), false);
-  std::map<Index, std::size_t> placeOf;  // in `walk`
+  std::map<Index, std::size_t> positionOf;  // in `walk`
   for (std::size_t first = 0; first < edges.size(); ++first) {
     std::vector<Index> walk;
-    placeOf.clear();
+    positionOf.clear();
     Index at = edges[first].first;
     for (std::size_t next = first; !used[next];) {
       used[next] = true;
-      placeOf[at] = walk.size();
+      positionOf[at] = walk.size();
       walk.push_back(at);
       at = edges[next].second;
-      if (const auto met = placeOf.find(at); met != placeOf.end()) {
+      if (const auto met = positionOf.find(at); met != positionOf.end()) {
         const auto begin = walk.begin() + static_cast<std::ptrdiff_t>(met->second);
         loops.emplace_back(begin, walk.end());
-        for (auto v = begin; v != walk.end(); ++v) placeOf.erase(*v);
+        for (auto v = begin; v != walk.end(); ++v) positionOf.erase(*v);
         walk.erase(begin, walk.end());
       }
       next = static_cast<std::size_t>(std::lower_bound(edges.begin(), edges.end(), Edge{at, 0}) - edges.begin());

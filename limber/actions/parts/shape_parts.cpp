@@ -15,9 +15,9 @@ namespace limber {
 
 namespace {
 
-constexpr Index kMostPatches = 1000;
+constexpr Index kMaxPatches = 1000;
 constexpr int kMedoidRounds = 20;    // settles within a few
-constexpr double kLeastArea = 0.01;  // of the surface, nearer to a representative than to those before it
+constexpr double kMinArea = 0.01;    // of the surface, nearer to a representative than to those before it
 constexpr double kWorthwhile = 0.5;  // of the second representative's gain
 constexpr double kFuzzyBelow = 0.3;  // lead: probabilities from 0.35 to 0.65
 constexpr double kFar = std::numeric_limits<double>::infinity();
@@ -122,7 +122,7 @@ Index farthest(const PatchDistances& distances, std::span<const float> nearest) 
   std::vector<Index> order(nearest.size());
   std::iota(order.begin(), order.end(), Index{0});
   std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return nearest[a] > nearest[b]; });
-  const double enough = kLeastArea * std::accumulate(distances.areas.begin(), distances.areas.end(), 0.0);
+  const double enough = kMinArea * std::accumulate(distances.areas.begin(), distances.areas.end(), 0.0);
   for (const Index candidate : order) {
     double area = 0;
     for (Index i = 0; i < distances.count(); ++i) {
@@ -237,17 +237,17 @@ FuzzyParts fuzzyByDistance(std::span<const std::vector<double>> distances) {
 }
 
 SurfaceParts partsByShape(const FaceGraph& graph, const ShapePartOptions& options, Progress& progress) {
-  if (options.count && (*options.count < 1 || *options.count > kMostShapeParts)) {
+  if (options.count && (*options.count < 1 || *options.count > kMaxShapeParts)) {
     throw Error(ErrorCode::kBadArgument, fmt::format("{} parts by shape are asked for", *options.count), {},
-                fmt::format("1 to {} can be told apart", kMostShapeParts));
+                fmt::format("1 to {} can be told apart", kMaxShapeParts));
   }
   if (graph.faceCount() == 0) return {};
   progress.step("patches");
-  const FacePatches patches = growPatches(graph, kMostPatches, progress);
+  const FacePatches patches = growPatches(graph, kMaxPatches, progress);
   progress.step("distances");
   const PatchDistances distances = patchDistances(graph, patches);
   progress.step("parts");
-  Representatives found = farApart(distances, options.count.value_or(kMostShapeParts));
+  Representatives found = farApart(distances, options.count.value_or(kMaxShapeParts));
   if (!options.count) found.patches.resize(bestCount(found));
   settle(distances, found.patches);
   const std::size_t count = found.patches.size();

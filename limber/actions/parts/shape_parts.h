@@ -10,7 +10,7 @@
 
 namespace limber {
 
-inline constexpr Index kMostShapeParts = 20;  // as in the paper
+inline constexpr Index kMaxShapeParts = 20;  // as in the paper
 
 struct ShapePartOptions {
   std::optional<Index> count;  // 1 to kMostShapeParts; none: found from the shape

@@ -149,7 +149,7 @@ TEST(ShapeParts, NothingHasNoParts) {
 
 TEST(ShapeParts, RefusesCountsThatItCannotTellApart) {
   Progress progress;
-  for (const Index count : {Index{0}, kMostShapeParts + 1}) {
+  for (const Index count : {Index{0}, kMaxShapeParts + 1}) {
     EXPECT_THROW(partsByShape(testing::icosphere(1), {count}, progress), Error);
   }
 }

@@ -178,15 +178,15 @@ TEST(PoseIo, AWrittenPoseIsReadAgainAndTouchesOnlyWhatMoved) {
   const Bytes glb = writeGlb(asset);
   const Asset back = readAsset(glb, "posed.glb");
   const AssetSkeleton again = readSkeleton(back);
-  const Pose stands = readNodePose(back, again);
-  EXPECT_LT((jointAt(again, stands, "foot") - jointAt(skeleton, pose, "foot")).norm(), 1e-6);
+  const Pose stance = readNodePose(back, again);
+  EXPECT_LT((jointAt(again, stance, "foot") - jointAt(skeleton, pose, "foot")).norm(), 1e-6);
   const Json after = testing::documentJson(asset);
   for (std::size_t n = 0; n < before["nodes"].size(); ++n) {
     const bool moved = n == skeleton.jointNode[1];
     EXPECT_EQ(after["nodes"][n] == before["nodes"][n], !moved);
   }
   // What is bound stays bound the same way: the vertices stand where the pose takes them.
-  const PosedGeometry there = posedGeometry(back, again, stands);
+  const PosedGeometry there = posedGeometry(back, again, stance);
   for (std::size_t v = 0; v < here.geometry.positions.size(); ++v) {
     EXPECT_LT((here.geometry.positions[v] - there.geometry.positions[v]).norm(), 1e-5f);
   }

@@ -258,11 +258,12 @@ std::vector<NamedPose> readPoses(std::string_view json) {
 std::vector<NamedPose> parsePoses(std::string_view json, std::string_view file) {
   try {
     std::vector<NamedPose> poses = readPoses(json);
-    const auto place = [&](auto& edits) {
+    const auto applyTransform = [&](auto& edits) {
       for (auto& edit : edits) edit.where = file.empty() ? edit.where : fmt::format("{}: {}", file, edit.where);
     };
     for (NamedPose& pose : poses) {
-      place(pose.edits.turns), place(pose.edits.moves), place(pose.edits.reaches), place(pose.edits.tasks);
+      applyTransform(pose.edits.turns), applyTransform(pose.edits.moves), applyTransform(pose.edits.reaches),
+          applyTransform(pose.edits.tasks);
     }
     return poses;
   } catch (const Error& error) {

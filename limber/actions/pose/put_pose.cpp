@@ -58,8 +58,8 @@ Vec3 middleOfJoints(const std::vector<Index>& joints, const std::vector<Vec3>& p
   return sum / static_cast<double>(joints.size());
 }
 
-void stayAbove(const Vec3& place, const std::vector<Index>& joints, const Skeleton& skeleton, Pose& pose) {
-  Vec3 shift = place - middleOfJoints(joints, posePositions(skeleton, pose));
+void stayAbove(const Vec3& position, const std::vector<Index>& joints, const Skeleton& skeleton, Pose& pose) {
+  Vec3 shift = position - middleOfJoints(joints, posePositions(skeleton, pose));
   shift.y() = 0;
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
     if (!skeleton.joints[j].parent) pose.locals[j].translation += shift;
@@ -82,7 +82,7 @@ Pose putPose(const PortablePose& pose, const Skeleton& to, const Pose& now) {
   const PlainSkeleton source(motion.skeleton), target(to);
   const PoseSequence frames = source.plain(sampleFrames(motion.skeleton, motion.clips.front(), 1));
   RetargetOptions options;
-  options.characterStands = true;
+  options.characterOnGround = true;
   // The rest pose tells where the ground is: who jumps has it below. One without form tells nothing.
   const bool tells = hasForm(source.skeleton(), restPose(source.skeleton()));
   const RetargetSetup setup(source.skeleton(), target.skeleton(), map, options, tells ? nullptr : &frames);

@@ -15,7 +15,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kMostOfSurface = 0.5;
+constexpr double kMaxSurfaceFraction = 0.5;
 constexpr double kNearestPart = 0.1;  // of an accessory's vertices, which tell what it hangs on
 
 // Not among them is what a head can be hidden in: helmets, hoods, masks, hair.
@@ -120,7 +120,7 @@ Accessories findAccessories(const Asset& asset, const Geometry& geometry) {
     all += area;
     if (result.ofTriangle.back() != kNoIndex) ofAccessories += area;
   }
-  return ofAccessories < kMostOfSurface * all ? result : Accessories();
+  return ofAccessories < kMaxSurfaceFraction * all ? result : Accessories();
 }
 
 std::vector<Triangle> bodyTriangles(const Geometry& geometry, const Accessories& accessories) {
@@ -160,22 +160,22 @@ std::vector<HungAccessory> hangAccessories(const Geometry& geometry, const Prepa
     const auto last = distances.begin() + static_cast<std::ptrdiff_t>(kNearestPart * static_cast<double>(own.size()));
     std::nth_element(distances.begin(), last, distances.end());
     const double reach = *last;
-    std::map<Index, double> share;  // by joint
+    std::map<Index, double> weightByJoint;  // by joint
     double count = 0;
     for (std::size_t i = 0; i < own.size(); ++i) {
       const SurfacePoint& point = nearest[i];
       if (point.distance > reach) continue;
-      hung.place += mesh.position(own[i]);
+      hung.position += mesh.position(own[i]);
       ++count;
       for (int corner = 0; corner < 3; ++corner) {
         const Index v = mesh.triangles[point.triangle][corner];
         for (Index slot = 0; slot < weights.slots; ++slot) {
-          share[weights.jointsOf(v)[slot]] += point.weights[corner] * weights.weightsOf(v)[slot];
+          weightByJoint[weights.jointsOf(v)[slot]] += point.weights[corner] * weights.weightsOf(v)[slot];
         }
       }
     }
-    hung.place /= count;
-    hung.joint = std::max_element(share.begin(), share.end(), [](const auto& a, const auto& b) {
+    hung.position /= count;
+    hung.joint = std::max_element(weightByJoint.begin(), weightByJoint.end(), [](const auto& a, const auto& b) {
                    return a.second < b.second;
                  })->first;
     for (const Index v : own) bindTo(hung.joint, v, weights);

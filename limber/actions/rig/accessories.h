@@ -33,7 +33,7 @@ std::vector<Triangle> bodyTriangles(const Geometry& geometry, const Accessories&
 struct HungAccessory {
   std::vector<Index> vertices;  // of prepared.mesh, its own
   Index joint = 0;
-  Vec3 place = Vec3::Zero();  // in the middle of its vertices that are nearest to the body; space of prepared.mesh
+  Vec3 position = Vec3::Zero();  // in the middle of its vertices that are nearest to the body; space of prepared.mesh
 };
 
 // Has each accessory follow one joint: the one that holds most of the body where the accessory is nearest to it.

@@ -135,7 +135,7 @@ void reportBridged(const Asset& asset, const Geometry& geometry, const PreparedM
 }
 
 // Methods would come to the same, after much work.
-WeightResult heldByOneJoint(const TriMesh& mesh) {
+WeightResult boundToOneJoint(const TriMesh& mesh) {
   WeightResult result;
   result.weights.slots = 1;
   result.weights.joints.assign(mesh.vertexCount(), 0);
@@ -144,7 +144,7 @@ WeightResult heldByOneJoint(const TriMesh& mesh) {
 }
 
 RigOptions optionsIn(const WorkingFrame& frame, RigOptions options) {
-  for (JointPin& pin : options.pins) pin.place = frame.toWorking(pin.place);
+  for (JointPin& pin : options.pins) pin.position = frame.toWorking(pin.position);
   return options;
 }
 
@@ -207,7 +207,7 @@ Rigged makeRig(const Asset& asset, const FigureToRig& input, const AutoRigOption
 
   progress.stage("skin");
   WeightResult skin = result.made && result.made->jointCount() == 1
-                          ? heldByOneJoint(prepared.mesh)
+                          ? boundToOneJoint(prepared.mesh)
                           : findWeightMethod(options.skinning).compute(prepared.mesh, bones, options.weights, progress);
   report.warnings.append(skin.warnings);
   bindLeftOut(figure, skin.weights);

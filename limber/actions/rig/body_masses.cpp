@@ -10,12 +10,12 @@ namespace {
 
 // Calls visit(joint, share) for each joint that moves a part of the triangle.
 template <class Visit>
-void forEachShare(const SkinWeights& weights, const Triangle& triangle, const Visit& visit) {
+void forEachInfluence(const SkinWeights& weights, const Triangle& triangle, const Visit& visit) {
   for (const Index corner : triangle) {
     const auto joints = weights.jointsOf(corner);
-    const auto shares = weights.weightsOf(corner);
+    const auto influences = weights.weightsOf(corner);
     for (std::size_t i = 0; i < joints.size(); ++i) {
-      if (shares[i] > 0) visit(joints[i], shares[i] / 3.0);
+      if (influences[i] > 0) visit(joints[i], influences[i] / 3.0);
     }
   }
 }
@@ -30,9 +30,9 @@ std::vector<PointMass> bodyMasses(const Geometry& geometry, const SkinWeights& w
   for (const Triangle& t : geometry.triangles) {
     const Vec3 a = corner(t, 0), b = corner(t, 1), c = corner(t, 2);
     const double area = triangleArea(a, b, c);
-    forEachShare(weights, t, [&](Index joint, double share) {
-      areas[joint] += share * area;
-      middles[joint] += share * area * (a + b + c) / 3;
+    forEachInfluence(weights, t, [&](Index joint, double fraction) {
+      areas[joint] += fraction * area;
+      middles[joint] += fraction * area * (a + b + c) / 3;
     });
   }
   for (std::size_t j = 0; j < count; ++j) {
@@ -40,9 +40,9 @@ std::vector<PointMass> bodyMasses(const Geometry& geometry, const SkinWeights& w
   }
   for (const Triangle& t : geometry.triangles) {
     const Vec3 a = corner(t, 0), b = corner(t, 1), c = corner(t, 2);
-    forEachShare(weights, t, [&](Index joint, double share) {
+    forEachInfluence(weights, t, [&](Index joint, double fraction) {
       const Vec3& middle = middles[joint];
-      const double volume = share * (a - middle).dot((b - middle).cross(c - middle)) / 6;
+      const double volume = fraction * (a - middle).dot((b - middle).cross(c - middle)) / 6;
       volumes[joint] += volume;
       moments[joint] += volume * (a + b + c + middle) / 4;
     });

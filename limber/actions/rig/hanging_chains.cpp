@@ -24,14 +24,14 @@ constexpr double kAlongFront = 0.87;  // cosine of 30 degrees
 
 double reachOf(const PreparedMesh& prepared, const HungAccessory& hung) {
   double reach = 0;
-  for (const Index v : hung.vertices) reach = std::max(reach, (prepared.mesh.position(v) - hung.place).norm());
+  for (const Index v : hung.vertices) reach = std::max(reach, (prepared.mesh.position(v) - hung.position).norm());
   return reach;
 }
 
 // Middles of what hangs, from where it hangs to its far end, evenly far from there: kSegments + 1.
 std::vector<Vec3> middlesOf(const PreparedMesh& prepared, const HungAccessory& hung) {
   const double reach = reachOf(prepared, hung);
-  const auto away = [&](Index v) { return (prepared.mesh.position(v) - hung.place).norm(); };
+  const auto away = [&](Index v) { return (prepared.mesh.position(v) - hung.position).norm(); };
   std::vector<Vec3> middles(kSegments + 1, Vec3::Zero());
   std::vector<Index> counts(kSegments + 1, 0);
   for (const Index v : hung.vertices) {
@@ -42,7 +42,7 @@ std::vector<Vec3> middlesOf(const PreparedMesh& prepared, const HungAccessory& h
   for (Index level = 0; level <= kSegments; ++level) {
     if (counts[level] > 0) middles[level] /= counts[level];
   }
-  middles[0] = hung.place;
+  middles[0] = hung.position;
   for (Index level = 1; level <= kSegments; ++level) {  // the far end has vertices, levels before it may have none
     Index next = level;
     while (counts[next] == 0) ++next;
@@ -55,12 +55,13 @@ std::vector<Vec3> middlesOf(const PreparedMesh& prepared, const HungAccessory& h
 double alongLine(const std::vector<Vec3>& line, const Vec3& point) {
   double best = 0, nearest = std::numeric_limits<double>::infinity();
   for (Index i = 0; i < kSegments; ++i) {
-    const Vec3 way = line[i + 1] - line[i];
-    const double share = std::clamp((point - line[i]).dot(way) / std::max(way.squaredNorm(), 1e-24), 0.0, 1.0);
-    const double distance = (line[i] + share * way - point).norm();
+    const Vec3 displacement = line[i + 1] - line[i];
+    const double fraction =
+        std::clamp((point - line[i]).dot(displacement) / std::max(displacement.squaredNorm(), 1e-24), 0.0, 1.0);
+    const double distance = (line[i] + fraction * displacement - point).norm();
     if (distance >= nearest) continue;
     nearest = distance;
-    best = i + share;
+    best = i + fraction;
   }
   return best;
 }
@@ -79,8 +80,8 @@ std::vector<std::string> freeNames(const Skeleton& skeleton, const std::string& 
 }
 
 // +Y along the chain, +Z to the front or, where the chain points there, up.
-Mat3 axesAlong(const Vec3& way) {
-  const Vec3 y = way.norm() > 0 ? Vec3(way.normalized()) : Vec3(-Vec3::UnitY());
+Mat3 axesAlong(const Vec3& displacement) {
+  const Vec3 y = displacement.norm() > 0 ? Vec3(displacement.normalized()) : Vec3(-Vec3::UnitY());
   const Vec3 toward = std::abs(y.z()) > kAlongFront ? Vec3::UnitY() : Vec3::UnitZ();
   const Vec3 z = (toward - toward.dot(y) * y).normalized();
   Mat3 axes;
@@ -117,9 +118,9 @@ std::vector<HangingChain> addChains(const PreparedMesh& prepared, const Accessor
       made.joints.push_back(std::move(joint));
     }
     for (const Index v : hung[a].vertices) {
-      const Vec3 place = prepared.mesh.position(v);
+      const Vec3 position = prepared.mesh.position(v);
       // A joint holds the middle of its segment alone, and shares its ends.
-      const double at = std::clamp(alongLine(line, place) - 0.5, 0.0, kSegments - 1.0);
+      const double at = std::clamp(alongLine(line, position) - 0.5, 0.0, kSegments - 1.0);
       const Index upper = std::min(static_cast<Index>(at), kSegments - 2);
       const auto lower = static_cast<float>(weights.slots > 1 ? at - upper : std::round(at - upper));
       const std::size_t slot = std::size_t{v} * weights.slots;

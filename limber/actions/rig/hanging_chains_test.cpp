@@ -35,7 +35,7 @@ struct Strip {
     accessories.hangs = {true};
     HungAccessory cape;
     for (Index v = 0; v < prepared.mesh.vertexCount(); ++v) cape.vertices.push_back(v);
-    cape.place = prepared.frame.toWorking({0, 3, 0});
+    cape.position = prepared.frame.toWorking({0, 3, 0});
     hung = {cape};
     made.joints.resize(2);
     made.joints[0].name = "chest";
@@ -97,7 +97,7 @@ TEST(HangingChains, AreNoneForWhatIsStiff) {
 TEST(HangingChains, AreNoneForWhatHasNoLength) {
   Strip strip(4);
   strip.hung[0].vertices = {0};
-  strip.hung[0].place = strip.prepared.mesh.position(0);
+  strip.hung[0].position = strip.prepared.mesh.position(0);
   EXPECT_TRUE(strip.add().empty());
   strip.hung[0].vertices.clear();
   EXPECT_TRUE(strip.add().empty());

@@ -115,9 +115,10 @@ std::vector<JointLandmark> landmarksByTemplate(const Skeleton& source, const Ske
   const LimbAlignment alignment = alignLimbs(inSource, there, ofTemplate);
   std::vector<JointLandmark> landmarks;
   for (const JointPair& pair : commonJoints(source, inSource)) {
-    const Vec3 place = globals[pair.source].translation();
-    const bool isWrong = (place - there[pair.target].translation()).norm() > kTemplateIsWrong * size;
-    landmarks.push_back({pair.source, isWrong ? alignment.places[pair.target] : alignment.maps[pair.target] * place});
+    const Vec3 position = globals[pair.source].translation();
+    const bool isWrong = (position - there[pair.target].translation()).norm() > kTemplateIsWrong * size;
+    landmarks.push_back(
+        {pair.source, isWrong ? alignment.positions[pair.target] : alignment.maps[pair.target] * position});
   }
   return landmarks;
 }

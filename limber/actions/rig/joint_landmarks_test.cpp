@@ -17,20 +17,20 @@ using testing::capsulePerson;
 
 Skeleton mappedSkeleton(const std::function<Vec3(const Vec3&)>& map) {
   const Skeleton person = capsulePerson().skeleton;
-  std::vector<Vec3> places;
-  for (const Vec3& place : testing::jointPlaces(person)) places.push_back(map(place));
+  std::vector<Vec3> positions;
+  for (const Vec3& position : testing::jointPositions(person)) positions.push_back(map(position));
   Skeleton result = person;
   for (Index j = 0; j < result.jointCount(); ++j) {
     const std::optional<Index> parent = result.joints[j].parent;
-    result.joints[j].rest.translation = parent ? Vec3(places[j] - places[*parent]) : places[j];
+    result.joints[j].rest.translation = parent ? Vec3(positions[j] - positions[*parent]) : positions[j];
   }
   return result;
 }
 
-const Vec3* placeOf(const std::vector<JointLandmark>& landmarks, Index joint) {
+const Vec3* positionOf(const std::vector<JointLandmark>& landmarks, Index joint) {
   const auto at =
       std::find_if(landmarks.begin(), landmarks.end(), [&](const JointLandmark& l) { return l.joint == joint; });
-  return at == landmarks.end() ? nullptr : &at->place;
+  return at == landmarks.end() ? nullptr : &at->position;
 }
 
 // A chain that is no body.
@@ -51,12 +51,12 @@ TEST(JointLandmarks, JointsInCommonAreWhereTheOtherBodyHasThem) {
   Skeleton target = mappedSkeleton([](const Vec3& p) { return Vec3(1.2 * p.x(), 1.5 * p.y(), p.z() + 3); });
   for (Joint& joint : target.joints) joint.name += "_other";
   const std::vector<JointLandmark> landmarks = commonLandmarks(source, target);
-  const std::vector<Vec3> places = testing::jointPlaces(target);
+  const std::vector<Vec3> positions = testing::jointPositions(target);
   for (const char* name : {"leftUpperArm", "leftLowerArm", "leftHand", "rightUpperLeg", "rightLowerLeg", "rightFoot"}) {
     const Index joint = source.find(name).value();
-    const Vec3* place = placeOf(landmarks, joint);
-    ASSERT_NE(place, nullptr) << name;
-    EXPECT_LT((*place - places[joint]).norm(), 1e-12) << name;
+    const Vec3* position = positionOf(landmarks, joint);
+    ASSERT_NE(position, nullptr) << name;
+    EXPECT_LT((*position - positions[joint]).norm(), 1e-12) << name;
   }
   for (std::size_t i = 0; i < landmarks.size(); ++i) {
     for (std::size_t k = 0; k < i; ++k) EXPECT_NE(landmarks[i].joint, landmarks[k].joint);
@@ -88,9 +88,10 @@ TEST(JointLandmarks, ByATemplateKeepTheirPlaceAgainstIt) {
   const Skeleton inTarget = mappedSkeleton([&](const Vec3& p) { return turned(off(p)); });
   const std::vector<JointLandmark> landmarks = landmarksByTemplate(source, inSource, inTarget, 1.8);
   EXPECT_GE(landmarks.size(), 12u);
-  const std::vector<Vec3> places = testing::jointPlaces(source);
+  const std::vector<Vec3> positions = testing::jointPositions(source);
   for (const JointLandmark& landmark : landmarks) {
-    EXPECT_LT((landmark.place - turned(places[landmark.joint])).norm(), 0.02) << source.joints[landmark.joint].name;
+    EXPECT_LT((landmark.position - turned(positions[landmark.joint])).norm(), 0.02)
+        << source.joints[landmark.joint].name;
   }
 }
 
@@ -101,9 +102,10 @@ TEST(JointLandmarks, ATemplateThatIsFarOffIsNotBelievedOfTheSource) {
   inSource.joints[hand].rest.translation += Vec3(0, 0, 0.5);  // of 1.8: far more than templates err
   const Skeleton inTarget = source;
   const std::vector<JointLandmark> landmarks = landmarksByTemplate(source, inSource, inTarget, 1.8);
-  const Vec3* place = placeOf(landmarks, hand);
-  ASSERT_NE(place, nullptr);
-  EXPECT_LT((*place - testing::jointPlaces(source)[hand]).norm(), 1e-6) << "where the template has it in the target";
+  const Vec3* position = positionOf(landmarks, hand);
+  ASSERT_NE(position, nullptr);
+  EXPECT_LT((*position - testing::jointPositions(source)[hand]).norm(), 1e-6)
+      << "where the template has it in the target";
 }
 
 Asset bareScene(const TriMesh& mesh) {
@@ -115,10 +117,10 @@ Asset bareScene(const TriMesh& mesh) {
 
 TEST(JointLandmarks, AFitCanBeCancelledAndTellsItsSteps) {
   const Asset person = bareScene(capsulePerson().mesh);
-  std::vector<std::string> told;
+  std::vector<std::string> reported;
   Progress progress([&](std::string_view stage, double) {
-    told.emplace_back(stage);
-    if (told.size() == 3) progress.cancel();
+    reported.emplace_back(stage);
+    if (reported.size() == 3) progress.cancel();
   });
   progress.stage("fit target");
   try {
@@ -127,8 +129,8 @@ TEST(JointLandmarks, AFitCanBeCancelledAndTellsItsSteps) {
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::kCancelled);
   }
-  EXPECT_LE(told.size(), 4u);
-  EXPECT_THAT(told.back(), ::testing::StartsWith("fit target: "));
+  EXPECT_LE(reported.size(), 4u);
+  EXPECT_THAT(reported.back(), ::testing::StartsWith("fit target: "));
 }
 
 TEST(JointLandmarks, WhatHasNoLimbsHasNoTemplate) {
@@ -148,7 +150,7 @@ Skeleton onTheGround() {
       joint.parent = 0;
     } else if (*joint.parent == 0) {  // the spine hangs on the hips, the legs on the ground
       const bool isLeg = joint.name != "spine";
-      if (isLeg) joint.rest.translation += testing::personJoints()[0].place;
+      if (isLeg) joint.rest.translation += testing::personJoints()[0].position;
       joint.parent = isLeg ? 0 : 1;
     } else {
       ++*joint.parent;
@@ -161,7 +163,7 @@ Skeleton onTheGround() {
 std::optional<Vec3> landmarkOf(const std::vector<JointLandmark>& landmarks, const Skeleton& skeleton,
                                const std::string& name) {
   for (const JointLandmark& landmark : landmarks) {
-    if (skeleton.joints[landmark.joint].name == name) return landmark.place;
+    if (skeleton.joints[landmark.joint].name == name) return landmark.position;
   }
   return std::nullopt;
 }
@@ -171,7 +173,7 @@ TEST(JointLandmarks, HipsAreInTheBodyAndNotOnTheGround) {
   const std::vector<JointLandmark> landmarks = commonLandmarks(source, target);
   const std::optional<Vec3> hips = landmarkOf(landmarks, source, "hips");
   ASSERT_TRUE(hips);
-  EXPECT_LT((*hips - testing::personJoints()[0].place).norm(), 1e-6);
+  EXPECT_LT((*hips - testing::personJoints()[0].position).norm(), 1e-6);
   EXPECT_FALSE(landmarkOf(landmarks, source, "root"));
 }
 

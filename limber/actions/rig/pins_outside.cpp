@@ -32,7 +32,7 @@ void warnPinsOutside(const PreparedMesh& mesh, std::span<const JointPin> pins, W
   std::size_t count = 0;
   std::string names;
   for (const JointPin& pin : pins) {
-    const Vec3 position = mesh.frame.toWorking(pin.place);
+    const Vec3 position = mesh.frame.toWorking(pin.position);
     const double away = surface.nearestPoint(position).distance;
     if (away <= tolerance) continue;
     if (!winding) winding.emplace(mesh.mesh);

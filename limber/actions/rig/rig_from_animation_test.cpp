@@ -256,9 +256,9 @@ TEST(RigFromAnimation, RefusesClipsTooLongToBeHeld) {
 TEST(RigFromAnimation, ReadingCanBeCancelled) {
   const Asset asset = morphingStrip(12, 0.8);
   for (const int last : {1, 7, 15, 23}) {
-    int told = 0;
+    int reported = 0;
     Progress progress([&](std::string_view, double) {
-      if (++told == last) progress.cancel();
+      if (++reported == last) progress.cancel();
     });
     ErrorCode code = ErrorCode::kFile;
     try {
@@ -267,7 +267,7 @@ TEST(RigFromAnimation, ReadingCanBeCancelled) {
       code = error.code();
     }
     EXPECT_EQ(code, ErrorCode::kCancelled) << last;
-    EXPECT_EQ(told, last);
+    EXPECT_EQ(reported, last);
   }
 }
 

@@ -88,11 +88,11 @@ void checkRanges(const RigRequest& request) {
   if (request.handles && (*request.handles < 1 || *request.handles >= kNoIndex)) {
     refuseOption("handles", fmt::format("takes a count from 1 on, not {}", *request.handles));
   }
-  if (request.maxInfluences < 1 || request.maxInfluences > kMostSlots) {
-    refuseOption("max-influences", fmt::format("takes 1 to {}, not {}", kMostSlots, request.maxInfluences));
+  if (request.maxInfluences < 1 || request.maxInfluences > kMaxSlots) {
+    refuseOption("max-influences", fmt::format("takes 1 to {}, not {}", kMaxSlots, request.maxInfluences));
   }
   for (const JointPin& pin : request.pins) {
-    if (!pin.place.allFinite()) refuseOption("pins", fmt::format("{} is not pinned to finite numbers", pin.joint));
+    if (!pin.position.allFinite()) refuseOption("pins", fmt::format("{} is not pinned to finite numbers", pin.joint));
   }
 }
 
@@ -117,11 +117,11 @@ bool flagOf(const JsonView& value) {
 }
 
 void readPins(const JsonView& pins, RigRequest& request) {
-  pins.forEachMember([&](std::string_view joint, const JsonView& place) {
+  pins.forEachMember([&](std::string_view joint, const JsonView& location) {
     JointPin& pin = request.pins.emplace_back();
     pin.joint = joint;
-    if (!place.json().is_array() || place.size() != 3) place.fail("is not a position of three numbers");
-    for (int axis = 0; axis < 3; ++axis) pin.place[axis] = place[static_cast<std::size_t>(axis)].asNumber();
+    if (!location.json().is_array() || location.size() != 3) location.fail("is not a position of three numbers");
+    for (int axis = 0; axis < 3; ++axis) pin.position[axis] = location[static_cast<std::size_t>(axis)].asNumber();
   });
 }
 

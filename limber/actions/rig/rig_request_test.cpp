@@ -94,7 +94,7 @@ TEST(RigRequest, ReadsEveryOptionOfJson) {
   EXPECT_EQ(fitted.rig.front.value(), Vec3(1, 0, 0));
   ASSERT_EQ(fitted.rig.pins.size(), 2u);
   EXPECT_EQ(fitted.rig.pins[0].joint, "head");
-  EXPECT_EQ(fitted.rig.pins[0].place, Vec3(0, 1.5, -2));
+  EXPECT_EQ(fitted.rig.pins[0].position, Vec3(0, 1.5, -2));
   EXPECT_TRUE(fitted.standUpright && fitted.chains);
 
   const AutoRigOptions handles = optionsOf(rigRequestFromJson(R"({"rigger": "curve-skeleton", "handles": 7})"));

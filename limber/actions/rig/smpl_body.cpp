@@ -22,9 +22,9 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kMostShapes = 10;
-constexpr std::size_t kMostInfluences = 8;
-constexpr std::size_t kMostVertices = 100'000'000;
+constexpr std::size_t kMaxShapes = 10;
+constexpr std::size_t kMaxInfluences = 8;
+constexpr std::size_t kMaxVertices = 100'000'000;
 
 std::vector<std::uint32_t> readCorners(const NpzFiles& files, std::size_t vertices) {
   const NpyArray array = neededSmplArray(files, "f");
@@ -42,7 +42,7 @@ std::vector<std::uint32_t> readCorners(const NpzFiles& files, std::size_t vertic
 
 NpyArray readWeightRows(const NpzFiles& files, std::size_t vertices) {
   NpyArray array = neededSmplArray(files, "weights");
-  if (array.shape.size() != 2 || array.shape[1] == 0 || array.shape[1] > kMostVertices) {
+  if (array.shape.size() != 2 || array.shape[1] == 0 || array.shape[1] > kMaxVertices) {
     refuseSmplArray("weights", fmt::format("has the shape ({}), not (vertices, joints)", fmt::join(array.shape, ", ")));
   }
   checkSmplShape(array, "weights", {vertices, array.shape[1]});
@@ -53,7 +53,7 @@ NpyArray readWeightRows(const NpzFiles& files, std::size_t vertices) {
 SkinWeights strongest(const NpyArray& array) {
   const std::size_t vertices = array.shape[0], joints = array.shape[1];
   SkinWeights weights;
-  weights.slots = static_cast<Index>(std::min(joints, kMostInfluences));
+  weights.slots = static_cast<Index>(std::min(joints, kMaxInfluences));
   weights.joints.assign(vertices * weights.slots, 0);
   weights.weights.assign(vertices * weights.slots, 0.0f);
   std::vector<std::pair<float, Index>> used;
@@ -81,7 +81,7 @@ std::vector<BlendShape> readShapes(const NpzFiles& files, std::size_t vertices) 
   const std::size_t count = array->shape.empty() ? 0 : array->shape.back();
   checkSmplShape(*array, "shapedirs", {vertices, 3, count});
   std::vector<BlendShape> shapes;
-  for (std::size_t s = 0; s < std::min(count, kMostShapes); ++s) {
+  for (std::size_t s = 0; s < std::min(count, kMaxShapes); ++s) {
     BlendShape shape{fmt::format("shape_{:02}", s), {}};
     for (std::size_t v = 0; v < vertices; ++v) {
       const double* row = array->values.data() + 3 * v * count + s;

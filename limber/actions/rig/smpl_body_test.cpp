@@ -24,9 +24,10 @@ using testing::rawBytes;
 // The body's own arrays. Joints that no row of vertices gives: as J.
 NpzFiles arraysOf(const RiggedBody& body) {
   const std::size_t vertices = body.mesh.vertexCount(), joints = body.skeleton.jointCount();
-  std::vector<double> positions, places;
+  std::vector<double> positions, coordinates;
   for (const Vec3f& p : body.mesh.positions) positions.insert(positions.end(), {p.x(), p.y(), p.z()});
-  for (const Vec3& p : testing::jointPlaces(body.skeleton)) places.insert(places.end(), {p.x(), p.y(), p.z()});
+  for (const Vec3& p : testing::jointPositions(body.skeleton))
+    coordinates.insert(coordinates.end(), {p.x(), p.y(), p.z()});
   std::vector<std::uint32_t> corners;
   for (const Triangle& t : body.mesh.triangles) corners.insert(corners.end(), t.begin(), t.end());
   std::vector<double> weights(vertices * joints, 0);
@@ -43,7 +44,7 @@ NpzFiles arraysOf(const RiggedBody& body) {
   files["f.npy"] = npyOf(npyHeader("<u4", testing::shapeText({corners.size() / 3, 3})), rawBytes(corners));
   files["weights.npy"] = npyDoubles({vertices, joints}, weights);
   files["kintree_table.npy"] = npyOf(npyHeader("<i8", testing::shapeText({2, joints})), rawBytes(tree));
-  files["J.npy"] = npyDoubles({joints, 3}, places);
+  files["J.npy"] = npyDoubles({joints, 3}, coordinates);
   return files;
 }
 
@@ -64,9 +65,9 @@ TEST(SmplBodyTest, JointsAndWeightsAreThoseOfTheArrays) {
   ASSERT_EQ(skeleton.skeleton.jointCount(), 2u);
   EXPECT_EQ(skeleton.skeleton.joints[0].name, "joint_00");
   EXPECT_EQ(skeleton.skeleton.joints[1].parent, Index{0});
-  const std::vector<Vec3> places = testing::jointPlaces(skeleton.skeleton);
-  EXPECT_LT((places[0] - Vec3(0.5, 0, 0)).norm(), 1e-6);  // the middle of the lower edge, and of the upper one
-  EXPECT_LT((places[1] - Vec3(0.5, 2, 0)).norm(), 1e-6);
+  const std::vector<Vec3> positions = testing::jointPositions(skeleton.skeleton);
+  EXPECT_LT((positions[0] - Vec3(0.5, 0, 0)).norm(), 1e-6);  // the middle of the lower edge, and of the upper one
+  EXPECT_LT((positions[1] - Vec3(0.5, 2, 0)).norm(), 1e-6);
   const Geometry geometry = collectGeometry(asset);
   EXPECT_EQ(geometry.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
   const SkinWeights weights = readWeights(asset, geometry, skeleton);
@@ -100,13 +101,13 @@ TEST(SmplBodyTest, ShapesBecomeBlendShapesTenAtMost) {
 
 TEST(SmplBodyTest, TwentyFourJointsAreSmpls) {
   NpzFiles files = smallBody();
-  std::vector<double> weights(4 * 24, 1.0 / 24), places(24 * 3, 0.5);
+  std::vector<double> weights(4 * 24, 1.0 / 24), positions(24 * 3, 0.5);
   std::vector<std::int32_t> tree;
   for (int j = 0; j < 24; ++j) tree.push_back(j - 1);
   for (int j = 0; j < 24; ++j) tree.push_back(j);
   files.erase("J_regressor.npy");
   files["weights.npy"] = npyDoubles({4, 24}, weights);
-  files["J.npy"] = npyDoubles({24, 3}, places);
+  files["J.npy"] = npyDoubles({24, 3}, positions);
   files["kintree_table.npy"] = npyOf(npyHeader("<i4", "(2, 24)"), rawBytes(tree));
   const Asset asset = smplBody(files, "small.npz");
   const AssetSkeleton skeleton = readSkeleton(asset);
@@ -199,8 +200,8 @@ TEST(SmplBodyTest, ItsRigGoesOntoAnotherBody) {
   options.rig.registration.rounds = 1;
   Progress progress;
   transferOnto(source, target, options, progress);
-  const std::vector<Vec3> wanted = testing::jointPlaces(other.skeleton);
-  const std::vector<Vec3> found = testing::jointPlaces(readSkeleton(target).skeleton);
+  const std::vector<Vec3> wanted = testing::jointPositions(other.skeleton);
+  const std::vector<Vec3> found = testing::jointPositions(readSkeleton(target).skeleton);
   ASSERT_EQ(found.size(), wanted.size());
   for (std::size_t j = 0; j < wanted.size(); ++j) EXPECT_LT((found[j] - wanted[j]).norm(), 0.005) << j;
 }

@@ -58,28 +58,28 @@ Quat turnOfClips(const Motion& motion, const SkeletonReading& skeleton) {
   for (const Clip& clip : motion.clips) {
     Pose pose = restPose(motion.skeleton);
     sampleClip(clip, 0, pose);
-    const std::optional<Vec3> now = standsAlong(motion.skeleton, pose);
+    const std::optional<Vec3> now = uprightAxis(motion.skeleton, pose);
     if (now && isUpright(*now)) ++standing;
   }
   return 2 * standing > motion.clips.size() ? turn : Quat::Identity();
 }
 
 std::optional<Vec3> restsAlong(const Character& character) {
-  return standsAlong(character.reading(), restPose(character.skeleton()));
+  return uprightAxis(character.reading(), restPose(character.skeleton()));
 }
 
 }  // namespace
 
-std::optional<Vec3> standsAlong(const SkeletonReading& reading, const Pose& pose) {
+std::optional<Vec3> uprightAxis(const SkeletonReading& reading, const Pose& pose) {
   const Skeleton& skeleton = reading.skeleton();
   if (!hasForm(skeleton, pose) || !isNamedBiped(reading.anatomy())) return {};
   const SkeletonMap map = matchSkeletons(reading, reading);
-  if (!map.isBiped() || !standsUpright(skeleton, pose, map, MapSide::kTarget)) return {};
+  if (!map.isBiped() || !isUpright(skeleton, pose, map, MapSide::kTarget)) return {};
   return neutralPose(skeleton, pose, map, MapSide::kTarget, {}).toBody.conjugate() * Vec3::UnitY();
 }
 
 Quat turnToStand(const SkeletonReading& reading) {
-  const std::optional<Vec3> up = standsAlong(reading, restPose(reading.skeleton()));
+  const std::optional<Vec3> up = uprightAxis(reading, restPose(reading.skeleton()));
   return up && !isUpright(*up) ? turnOf(*up) : Quat::Identity();
 }
 

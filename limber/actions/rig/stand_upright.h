@@ -13,7 +13,7 @@ namespace limber {
 
 // The axis that a person in that pose stands along; none where names of joints tell no person, where the pose
 // has no form (hasForm), or where head and feet lie to the same side of the hips.
-std::optional<Vec3> standsAlong(const SkeletonReading& skeleton, const Pose& pose);
+std::optional<Vec3> uprightAxis(const SkeletonReading& skeleton, const Pose& pose);
 
 // What turns one who stands along another axis in rest pose to stand along +Y; none for all others.
 Quat turnToStand(const SkeletonReading& skeleton);

@@ -58,18 +58,18 @@ std::optional<Vec3> upOf(const Asset& asset, double seconds = -1) {
   const Motion motion = motionOf(asset);
   Pose pose = restPose(motion.skeleton);
   if (seconds >= 0) sampleClip(motion.clips.back(), seconds, pose);
-  return standsAlong(motion.skeleton, pose);
+  return uprightAxis(motion.skeleton, pose);
 }
 
-TEST(StandsAlong, PeopleTellTheirUp) {
+TEST(UprightAxis, PeopleTellTheirUp) {
   for (const Vec3& up : kAxes) {
     const Skeleton person = personAlong(up);
-    const std::optional<Vec3> found = standsAlong(person, restPose(person));
+    const std::optional<Vec3> found = uprightAxis(person, restPose(person));
     ASSERT_TRUE(found);
     EXPECT_TRUE(found->isApprox(up, 1e-9)) << found->transpose();
   }
   const Skeleton chain = straightChain(5, 1);
-  EXPECT_FALSE(standsAlong(chain, restPose(chain)));
+  EXPECT_FALSE(uprightAxis(chain, restPose(chain)));
 }
 
 TEST(StandUpright, OneWhoStandsIsLeftAlone) {

@@ -28,10 +28,10 @@ struct NamedJoint {
 
 NamedJoint parseJoint(const Json& json, std::size_t number) {
   NamedJoint joint;
-  const std::string place = "joint " + std::to_string(number);
-  if (!json.is_object() || !json.contains("name") || !json["name"].is_string()) refuse("has no name", place);
+  const std::string location = "joint " + std::to_string(number);
+  if (!json.is_object() || !json.contains("name") || !json["name"].is_string()) refuse("has no name", location);
   joint.name = json["name"].get<std::string>();
-  if (joint.name.empty()) refuse("has no name", place);
+  if (joint.name.empty()) refuse("has no name", location);
   if (json.contains("parent") && !json["parent"].is_null()) {
     if (!json["parent"].is_string()) refuse("names its parent by something that is no name", joint.name);
     joint.parent = json["parent"].get<std::string>();

@@ -23,9 +23,9 @@ inline void bindElsewhere(Asset& asset, Index node, const std::vector<Index>& jo
   skin.inverseBindMatrices = addFloatAccessor(asset, binds, 16);
   document.nodes[node].skin = addElement(document.skins, std::move(skin));
   for (gltf::Primitive& primitive : document.meshes[document.nodes[node].mesh.value()].primitives) {
-    std::vector<float> places = readFloats(asset, primitive.attributes.find("POSITION").value());
-    for (std::size_t i = 0; i < places.size(); ++i) places[i] += by[static_cast<Eigen::Index>(i % 3)];
-    primitive.attributes.set("POSITION", addFloatAccessor(asset, places, 3, kVertexTarget, true));
+    std::vector<float> positions = readFloats(asset, primitive.attributes.find("POSITION").value());
+    for (std::size_t i = 0; i < positions.size(); ++i) positions[i] += by[static_cast<Eigen::Index>(i % 3)];
+    primitive.attributes.set("POSITION", addFloatAccessor(asset, positions, 3, kVertexTarget, true));
   }
 }
 

@@ -198,9 +198,9 @@ TargetModel readTarget(Geometry geometry, Accessories accessories) {
 RigTransfer transferInto(const TargetModel& target, const SourceModel& source, std::vector<JointLandmark> landmarks,
                          const RigTransferOptions& options, Progress& progress) {
   const WorkingFrame& frame = target.figure.prepared.frame;
-  for (JointLandmark& landmark : landmarks) landmark.place = frame.toWorking(landmark.place);
+  for (JointLandmark& landmark : landmarks) landmark.position = frame.toWorking(landmark.position);
   RigTransfer rig = transferRig(source.body, landmarks, target.body, options, progress);
-  for (Vec3& place : rig.places) place = frame.toSource(place);
+  for (Vec3& position : rig.positions) position = frame.toSource(position);
   bindLeftOut(target.figure, rig.weights);
   if (!target.accessories.empty()) {
     hangAccessories(target.geometry, target.figure.prepared, target.accessories, rig.weights);
@@ -255,7 +255,7 @@ TransferReport runTransfer(const Asset& sourceAsset, Asset& target, const Transf
   progress.stage("transfer");
   const RigTransfer rig = transferInto(bare, source, std::move(landmarks), options.rig, progress);
   const Skeleton skeleton =
-      movedSkeleton(source.body.skeleton, restGlobals(source.body.skeleton), rig.places, rig.turns);
+      movedSkeleton(source.body.skeleton, restGlobals(source.body.skeleton), rig.positions, rig.turns);
   report.joints = skeleton.jointCount();
   report.gaps = rig.gaps;
 

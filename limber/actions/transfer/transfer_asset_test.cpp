@@ -65,8 +65,8 @@ TransferReport transferred(const Asset& source, Asset& target, const TransferAss
   return report;
 }
 
-std::vector<Vec3> placesIn(const Asset& asset) {
-  return testing::jointPlaces(readSkeleton(asset).skeleton);
+std::vector<Vec3> positionsIn(const Asset& asset) {
+  return testing::jointPositions(readSkeleton(asset).skeleton);
 }
 
 // A target with a rig of its own, under other names: its joints are the landmarks.
@@ -80,14 +80,14 @@ TEST(TransferAssetTest, PutsARigOntoABodyWithAnotherOne) {
   for (Vec3f& p : other.mesh.positions) p *= 1.4f;
   Asset target = sceneOf(other.mesh, "other.glb");
   attachRig(target, collectGeometry(target), other.skeleton, other.weights);
-  const std::vector<Vec3> wanted = placesIn(target);
+  const std::vector<Vec3> wanted = positionsIn(target);
   const TransferReport report = transferred(source, target);
   EXPECT_EQ(report.removedJoints, 15u);
   const Skeleton skeleton = readSkeleton(target).skeleton;
   ASSERT_EQ(skeleton.jointCount(), 15u);
   for (Index j = 0; j < 15; ++j) {
     EXPECT_EQ(skeleton.joints[j].name, capsulePerson().skeleton.joints[j].name);
-    EXPECT_LT((placesIn(target)[j] - wanted[j]).norm(), 0.005) << skeleton.joints[j].name;
+    EXPECT_LT((positionsIn(target)[j] - wanted[j]).norm(), 0.005) << skeleton.joints[j].name;
   }
 }
 
@@ -102,7 +102,7 @@ TEST(TransferAssetTest, FindsTheLimbsOfABareBody) {
   EXPECT_THAT(names, ::testing::ElementsAre("read geometry", "fit target", "fit source", "transfer", "write rig"));
   EXPECT_EQ(json.at("stages")[1].at("steps")[0].at("name"), "measure body");
   EXPECT_FALSE(json.at("stages")[3].at("steps").empty());
-  const std::vector<Vec3> wanted = placesIn(source), found = placesIn(target);
+  const std::vector<Vec3> wanted = positionsIn(source), found = positionsIn(target);
   for (std::size_t j = 0; j < wanted.size(); ++j) EXPECT_LT((found[j] - wanted[j]).norm(), 0.005) << j;
 }
 
@@ -194,8 +194,8 @@ TEST(TransferAssetTest, AFloorTakesNoShapesAndNoColors) {
 TEST(TransferAssetTest, AnInnerShellTakesTheShapesOfTheOuterOne) {
   TriMesh outer, inner;
   const testing::PersonJoint& head = testing::personJoints()[2];
-  testing::addCapsule(outer, head.place, head.end, head.radius);
-  testing::addCapsule(inner, head.place, head.end, 0.97 * head.radius);
+  testing::addCapsule(outer, head.position, head.end, head.radius);
+  testing::addCapsule(inner, head.position, head.end, 0.97 * head.radius);
   Asset target = personAnd(inner);
   transferred(liftedPerson(), target);
   const auto offsetsOf = [&](Index mesh) {
@@ -248,7 +248,7 @@ TEST(TransferAssetTest, TheTargetIsReadAsItsShapesHaveIt) {
   target.document.nodes[0].weights = {1};
   attachRig(target, collectGeometry(target), person.skeleton, person.weights);
   transferred(riggedPerson(), target);
-  const std::vector<Vec3> found = placesIn(target), wanted = placesIn(riggedPerson());
+  const std::vector<Vec3> found = positionsIn(target), wanted = positionsIn(riggedPerson());
   for (std::size_t j = 0; j < wanted.size(); ++j) EXPECT_LT((found[j] - wanted[j]).norm(), 0.005) << j;
 }
 
@@ -276,19 +276,19 @@ TEST(TransferAssetTest, ColorsAreThoseOfThePointThatAVertexTakesAfter) {
     TransferAssetOptions options = fewRounds();
     // Places as colours, so that each vertex of the target says where it was looked for.
     options.colors.at = [&](Index triangle, const Vec3& weights) {
-      Vec3f place = Vec3f::Zero();
+      Vec3f position = Vec3f::Zero();
       for (std::size_t k = 0; k < 3; ++k) {
-        place += static_cast<float>(weights[static_cast<Eigen::Index>(k)]) *
-                 geometry.positions[geometry.triangles[triangle][k]];
+        position += static_cast<float>(weights[static_cast<Eigen::Index>(k)]) *
+                    geometry.positions[geometry.triangles[triangle][k]];
       }
-      return Vec3f(place / 4 + Vec3f::Constant(0.5f));
+      return Vec3f(position / 4 + Vec3f::Constant(0.5f));
     };
     transferred(source, target, options);
     const std::vector<float> colors = readFloats(target, attributesOf(target).find("COLOR_0").value());
     ASSERT_EQ(colors.size(), 4 * person.mesh.positions.size());
     for (Index v = 0; v < person.mesh.vertexCount(); ++v) {
-      const Vec3f place = 4 * (Vec3f(colors[4 * v], colors[4 * v + 1], colors[4 * v + 2]) - Vec3f::Constant(0.5f));
-      EXPECT_LT((place - person.mesh.positions[v]).norm(), 0.03) << v;
+      const Vec3f position = 4 * (Vec3f(colors[4 * v], colors[4 * v + 1], colors[4 * v + 2]) - Vec3f::Constant(0.5f));
+      EXPECT_LT((position - person.mesh.positions[v]).norm(), 0.03) << v;
     }
   }
 }
@@ -338,12 +338,12 @@ TEST(TransferAssetTest, ColorsGoToATextureWhereTheTargetHasRoomForOne) {
     attachRig(target, collectGeometry(target), person.skeleton, weights);
     TransferAssetOptions options = fewRounds();
     options.colors.at = [&](Index triangle, const Vec3& at) {
-      Vec3f place = Vec3f::Zero();
+      Vec3f position = Vec3f::Zero();
       for (std::size_t k = 0; k < 3; ++k) {
-        place +=
+        position +=
             static_cast<float>(at[static_cast<Eigen::Index>(k)]) * geometry.positions[geometry.triangles[triangle][k]];
       }
-      return Vec3f(place / 4 + Vec3f::Constant(0.5f));
+      return Vec3f(position / 4 + Vec3f::Constant(0.5f));
     };
     std::vector<Vec3f> seen;
     options.colors.pictureSize = 512;
@@ -366,8 +366,8 @@ TEST(TransferAssetTest, ColorsGoToATextureWhereTheTargetHasRoomForOne) {
         wanted += static_cast<float>(texel.weights[static_cast<Eigen::Index>(k)]) *
                   plan.mesh.positions[plan.mesh.triangles[texel.triangle][k]];
       }
-      const Vec3f place = 4 * (seen[texel.pixel] - Vec3f::Constant(0.5f));
-      ASSERT_LT((place - wanted).norm(), 0.03) << texel.pixel;
+      const Vec3f position = 4 * (seen[texel.pixel] - Vec3f::Constant(0.5f));
+      ASSERT_LT((position - wanted).norm(), 0.03) << texel.pixel;
     }
   }
 }
@@ -385,8 +385,8 @@ TEST(TransferAssetTest, CanBeCancelledInEveryStage) {
   for (const std::string stage : {"read geometry", "fit target: ", "transfer: "}) {
     Asset target = stage == "fit target: " ? sceneOf(capsulePerson().mesh, "bare.obj") : tallPerson();
     const Json before = testing::documentJson(target);
-    Progress progress([&](std::string_view told, double) {
-      if (told.starts_with(stage)) progress.cancel();
+    Progress progress([&](std::string_view message, double) {
+      if (message.starts_with(stage)) progress.cancel();
     });
     try {
       transferOnto(source, target, fewRounds(), progress);
@@ -455,7 +455,7 @@ TEST(TransferAssetTest, AccessoriesOfTheTargetFollowOneJoint) {
     EXPECT_FLOAT_EQ(weights.weightsOf(v)[0], 1) << v;
     EXPECT_EQ(weights.jointsOf(v)[0], 1u) << v;  // the spine
   }
-  const std::vector<Vec3> found = placesIn(target), wanted = placesIn(riggedPerson());
+  const std::vector<Vec3> found = positionsIn(target), wanted = positionsIn(riggedPerson());
   for (std::size_t j = 0; j < wanted.size(); ++j) EXPECT_LT((found[j] - wanted[j]).norm(), 0.005) << j;
 }
 

@@ -23,14 +23,14 @@ inline std::string fbxMatrix(std::string_view name, const Affine& map) {
 }
 
 inline std::string fbxGeometry(const TriMesh& mesh) {
-  std::vector<double> places, corners;
+  std::vector<double> positions, corners;
   for (const Vec3f& p : mesh.positions) {
-    for (int k = 0; k < 3; ++k) places.push_back(static_cast<double>(p[k]));
+    for (int k = 0; k < 3; ++k) positions.push_back(static_cast<double>(p[k]));
   }
   for (const Triangle& t : mesh.triangles) {
     corners.insert(corners.end(), {double(t[0]), double(t[1]), -double(t[2]) - 1});
   }
-  return "Geometry: 100, \"Geometry::Body\", \"Mesh\" {\n" + fbxArray("Vertices", places) +
+  return "Geometry: 100, \"Geometry::Body\", \"Mesh\" {\n" + fbxArray("Vertices", positions) +
          fbxArray("PolygonVertexIndex", corners) + "}\n";
 }
 
@@ -49,18 +49,18 @@ inline std::string fbxText(const TriMesh& mesh, const Skeleton& skeleton, const 
                fmt::format("P: \"Lcl Translation\", \"Lcl Translation\", \"\", \"A\",{},{},{}\n}}\n}}\n", at.x(),
                            at.y(), at.z());
     links += fmt::format("C: \"OO\",{},{}\n", kModel + j, joint.parent ? kModel + int(*joint.parent) : 0);
-    std::vector<double> vertices, shares;
+    std::vector<double> vertices, fractions;
     for (Index v = 0; v < weights.vertexCount(); ++v) {
       for (Index slot = 0; slot < weights.slots; ++slot) {
         if (weights.jointsOf(v)[slot] != j || !(weights.weightsOf(v)[slot] > 0)) continue;
         vertices.push_back(v);
-        shares.push_back(static_cast<double>(weights.weightsOf(v)[slot]));
+        fractions.push_back(static_cast<double>(weights.weightsOf(v)[slot]));
       }
     }
     if (vertices.empty()) continue;
     objects +=
         fmt::format("Deformer: {}, \"SubDeformer::{}\", \"Cluster\" {{\nVersion: 100\n", kCluster + j, joint.name) +
-        fbxArray("Indexes", vertices) + fbxArray("Weights", shares) + fbxMatrix("Transform", globals[j].inverse()) +
+        fbxArray("Indexes", vertices) + fbxArray("Weights", fractions) + fbxMatrix("Transform", globals[j].inverse()) +
         fbxMatrix("TransformLink", globals[j]) + "}\n";
     links += fmt::format("C: \"OO\",{},300\nC: \"OO\",{},{}\n", kCluster + j, kModel + j, kCluster + j);
   }

@@ -33,7 +33,7 @@ inline TriMesh madeBody() {
 
 struct MadeJoint {
   std::string_view name, parent;
-  Vec3 place;
+  Vec3 position;
 };
 inline const std::vector<MadeJoint>& madeJoints() {
   static const std::vector<MadeJoint> joints = {{"hips", "", Vec3(0, 0.1, 0)},
@@ -49,11 +49,11 @@ inline Skeleton madeSkeleton() {
   for (const MadeJoint& made : madeJoints()) {
     Joint joint;
     joint.name = made.name;
-    joint.rest.translation = made.place;
+    joint.rest.translation = made.position;
     for (Index j = 0; j < skeleton.jointCount(); ++j) {
       if (madeJoints()[j].name != made.parent) continue;
       joint.parent = j;
-      joint.rest.translation -= madeJoints()[j].place;
+      joint.rest.translation -= madeJoints()[j].position;
     }
     skeleton.joints.push_back(joint);
   }
@@ -61,10 +61,10 @@ inline Skeleton madeSkeleton() {
 }
 
 // The joint that each point of the made body's space is nearest to.
-inline Index nearestMadeJoint(const Vec3& place) {
+inline Index nearestMadeJoint(const Vec3& position) {
   Index nearest = 0;
   for (Index j = 1; j < madeJoints().size(); ++j) {
-    if ((madeJoints()[j].place - place).norm() < (madeJoints()[nearest].place - place).norm()) nearest = j;
+    if ((madeJoints()[j].position - position).norm() < (madeJoints()[nearest].position - position).norm()) nearest = j;
   }
   return nearest;
 }
@@ -75,9 +75,9 @@ inline SkinWeights madeWeights(const TriMesh& body) {
   weights.slots = 2;
   for (Index v = 0; v < body.vertexCount(); ++v) {
     const Index joint = nearestMadeJoint(body.position(v));
-    const float share = 0.05f + 0.2f * std::abs(body.positions[v].x());
+    const float fraction = 0.05f + 0.2f * std::abs(body.positions[v].x());
     weights.joints.insert(weights.joints.end(), {joint, joint == 0 ? Index{1} : Index{0}});
-    weights.weights.insert(weights.weights.end(), {1 - share, share});
+    weights.weights.insert(weights.weights.end(), {1 - fraction, fraction});
   }
   return weights;
 }
@@ -107,7 +107,7 @@ inline std::string madeText(const Affine& map, const TriMesh& body, const SkinWe
                             std::string_view jointWord = "joints") {
   std::string text;
   for (const MadeJoint& joint : madeJoints()) {
-    const Vec3 p = map * joint.place;
+    const Vec3 p = map * joint.position;
     text += fmt::format("{} {} {} {} {}\n", jointWord, joint.name, p.x(), p.y(), p.z());
   }
   text += "root hips\n";

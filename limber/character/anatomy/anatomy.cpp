@@ -19,7 +19,7 @@ constexpr std::array<std::string_view, kPartKinds> kKindNames = {"trunk", "neck"
                                                                  "hair",  "prop", "attachment", "other"};
 
 // Under each guess of the axes, and the field of the likeliest.
-struct Guesses {
+struct Hypotheses {
   std::vector<double> scores;  // axesScore
   std::size_t best = 0;
   std::optional<PartField> field;
@@ -44,22 +44,22 @@ double conventionScore(const BodyReading& reading, const Axes& axes, bool sidesB
   return score + (votes * axes.left().dot(reading.body.lateral) > 0 ? kSides : 0);
 }
 
-Guesses readUnderEach(const BodyReading& reading, std::span<const std::uint32_t> allowed, const PartWeights& weights,
-                      bool sidesByNames) {
+Hypotheses readUnderEach(const BodyReading& reading, std::span<const std::uint32_t> allowed, const PartWeights& weights,
+                         bool sidesByNames) {
   StateScores steady(reading.measures.size());
   addScores(reading.measures.steadyFeatures(), weights, steady);
-  Guesses guesses;
-  for (const Axes& axes : reading.guesses) {
+  Hypotheses hypotheses;
+  for (const Axes& axes : reading.hypotheses) {
     StateScores own = steady;
     addScores(reading.measures.features(axes), weights, own);
     PartField other(reading.body, own, weights, allowed);
-    guesses.scores.push_back(axesScore(reading.measures, axes, other, weights) +
-                             conventionScore(reading, axes, sidesByNames));
-    if (guesses.field && guesses.scores.back() <= guesses.scores[guesses.best]) continue;
-    guesses.best = guesses.scores.size() - 1;
-    guesses.field.emplace(std::move(other));
+    hypotheses.scores.push_back(axesScore(reading.measures, axes, other, weights) +
+                                conventionScore(reading, axes, sidesByNames));
+    if (hypotheses.field && hypotheses.scores.back() <= hypotheses.scores[hypotheses.best]) continue;
+    hypotheses.best = hypotheses.scores.size() - 1;
+    hypotheses.field.emplace(std::move(other));
   }
-  return guesses;
+  return hypotheses;
 }
 
 bool isDeclared(const Joint& joint) {
@@ -77,8 +77,8 @@ Anatomy read(const Skeleton& skeleton, const Pose& pose, const AnatomyOptions& o
   anatomy.partOf.resize(skeleton.jointCount());
   if (skeleton.joints.empty()) return anatomy;
   const BodyReading reading(skeleton, pose, options.names, conventions);
-  const Guesses guesses = readUnderEach(reading, certainStates(reading, options), weights, options.sidesByNames);
-  const bool isPossible = guesses.field->logSum() > static_cast<double>(kNever) / 2;
+  const Hypotheses hypotheses = readUnderEach(reading, certainStates(reading, options), weights, options.sidesByNames);
+  const bool isPossible = hypotheses.field->logSum() > static_cast<double>(kNever) / 2;
   // What names are certain of goes first, then what the file declares.
   if (!isPossible && reading.convention) return read(skeleton, pose, options, false, weights);
   if (!isPossible && options.names && std::any_of(skeleton.joints.begin(), skeleton.joints.end(), isDeclared)) {
@@ -86,13 +86,13 @@ Anatomy read(const Skeleton& skeleton, const Pose& pose, const AnatomyOptions& o
     anatomy.believesFile = false;
     return anatomy;
   }
-  const auto& [scores, best, field] = guesses;
+  const auto& [scores, best, field] = hypotheses;
   double all = 0, sameSides = 0;
-  const Axes& axes = reading.guesses[best];
+  const Axes& axes = reading.hypotheses[best];
   for (std::size_t g = 0; g < scores.size(); ++g) {
-    const double share = std::exp(scores[g] - scores[best]);
-    all += share;
-    if (reading.guesses[g].left().dot(axes.left()) > 0) sameSides += share;
+    const double fraction = std::exp(scores[g] - scores[best]);
+    all += fraction;
+    if (reading.hypotheses[g].left().dot(axes.left()) > 0) sameSides += fraction;
   }
 
   anatomy.axes = axes;

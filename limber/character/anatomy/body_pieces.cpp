@@ -84,14 +84,14 @@ void BodyPieces::findCenter(const Skeleton& skeleton, const JointTree& tree) {
     if (fork) fork = tree.meeting(*fork, *spine);
     const bool isLimb = fork && anatomy.partOf[*fork] && anatomy.parts[*anatomy.partOf[*fork]].kind == PartKind::kLeg;
     if (fork && !isLimb && fork != above) pelvis = fork;
-    pelvisIsGuess = pelvis && trunkPart && tree.isAboveOrSelf(trunkPart->joints.front(), *pelvis) &&
-                    trunkPart->joints.front() != *pelvis;
+    pelvisIsInferred = pelvis && trunkPart && tree.isAboveOrSelf(trunkPart->joints.front(), *pelvis) &&
+                       trunkPart->joints.front() != *pelvis;
     // A joint called hips that carries them all is believed.
     for (std::optional<Index> up = pelvis; up; up = tree.parent(*up)) {
       const bool isHips = up == anatomy.declaredHips || saysHips(readNameOf(skeleton.joints[*up]));
       if (!isHips) continue;
       pelvis = up;
-      pelvisIsGuess = false;
+      pelvisIsInferred = false;
       break;
     }
   }

@@ -22,8 +22,8 @@ struct BodyPieces {
   BodyPieces(const Skeleton& skeleton, const AnatomyOptions& options = {});
 
   Anatomy anatomy;
-  std::optional<Index> pelvis;  // where the hindmost legs and the spine part; of no legs the first joint of the trunk
-  bool pelvisIsGuess = false;   // the trunk begins above it, and no name tells which of both is the pelvis
+  std::optional<Index> pelvis;    // where the hindmost legs and the spine part; of no legs the first joint of the trunk
+  bool pelvisIsInferred = false;  // the trunk begins above it, and no name tells which of both is the pelvis
   std::vector<Index> trunk, neck;  // between the pelvis and the neck, and from there to the head
   std::optional<Index> head;
   std::vector<LimbPieces> limbs;  // all parts but these, by kind, pair and side

@@ -123,7 +123,7 @@ TEST(BodyPieces, HipsByNameMayCarryAPelvis) {
 }
 
 // Of all parts of that kind.
-double leastConfidence(const Skeleton& skeleton, PartKind kind, bool names = false) {
+double minConfidence(const Skeleton& skeleton, PartKind kind, bool names = false) {
   const BodyPieces body(skeleton, {names, {}});
   double least = 1;
   for (const Part& part : body.anatomy.parts) {
@@ -136,10 +136,10 @@ constexpr PartKind kMainParts[] = {PartKind::kTrunk, PartKind::kArm, PartKind::k
 
 TEST(BodyPieces, ACleanPersonIsSure) {
   for (const PartKind kind : kMainParts) {
-    EXPECT_GE(leastConfidence(vrmPerson(), kind), kDoubtful) << nameOf(kind);
-    EXPECT_GE(leastConfidence(vrmPerson(), kind, true), kDoubtful) << nameOf(kind);
+    EXPECT_GE(minConfidence(vrmPerson(), kind), kDoubtful) << nameOf(kind);
+    EXPECT_GE(minConfidence(vrmPerson(), kind, true), kDoubtful) << nameOf(kind);
   }
-  EXPECT_LT(leastConfidence(vrmPerson(), PartKind::kArm), leastConfidence(vrmPerson(), PartKind::kArm, true))
+  EXPECT_LT(minConfidence(vrmPerson(), PartKind::kArm), minConfidence(vrmPerson(), PartKind::kArm, true))
       << "a name says more";
 }
 
@@ -157,8 +157,8 @@ TEST(BodyPieces, ATailIsOne) {
 // A person's form is then the same from the front and the back.
 TEST(BodyPieces, WithoutToesLeftIsAGuess) {
   const Skeleton person = onAnkles(vrmPerson());
-  EXPECT_LT(leastConfidence(person, PartKind::kLeg), leastConfidence(vrmPerson(), PartKind::kLeg));
-  EXPECT_GE(leastConfidence(person, PartKind::kTrunk), kDoubtful);
+  EXPECT_LT(minConfidence(person, PartKind::kLeg), minConfidence(vrmPerson(), PartKind::kLeg));
+  EXPECT_GE(minConfidence(person, PartKind::kTrunk), kDoubtful);
 }
 
 TEST(BodyPieces, OddArmsAreLessSure) {
@@ -166,8 +166,8 @@ TEST(BodyPieces, OddArmsAreLessSure) {
   for (Joint& joint : person.joints) {
     if (joint.name == "leftHand" || joint.name == "rightHand") joint.rest.translation *= 0.3;
   }
-  EXPECT_LT(leastConfidence(person, PartKind::kArm), leastConfidence(vrmPerson(), PartKind::kArm));
-  EXPECT_GE(leastConfidence(person, PartKind::kLeg), kDoubtful);
+  EXPECT_LT(minConfidence(person, PartKind::kArm), minConfidence(vrmPerson(), PartKind::kArm));
+  EXPECT_GE(minConfidence(person, PartKind::kLeg), kDoubtful);
 }
 
 TEST(BodyPieces, LimbsAreMeasuredFromWhereTheyHang) {

@@ -11,7 +11,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kMostOutOfPlane = 0.5;  // cosine between up and the lateral axis: 60 degrees off
+constexpr double kMaxOutOfPlane = 0.5;  // cosine between up and the lateral axis: 60 degrees off
 
 std::vector<Vec3> finitePositions(const Skeleton& skeleton, const Pose& pose) {
   std::vector<Vec3> positions = posePositions(skeleton, pose);
@@ -23,19 +23,19 @@ std::vector<Vec3> finitePositions(const Skeleton& skeleton, const Pose& pose) {
 }
 
 // The axes that lie in the plane, or the one that is nearest to it where all lie askew.
-std::vector<Axes> guessesFor(const Vec3& lateral) {
+std::vector<Axes> hypothesesFor(const Vec3& lateral) {
   const double nearest = lateral.cwiseAbs().minCoeff();
-  std::vector<Axes> guesses;
+  std::vector<Axes> hypotheses;
   for (const double sign : {1.0, -1.0}) {
     for (const Eigen::Index axis : {1, 2, 0}) {
       Vec3 up = sign * Vec3::Unit(axis);
       const double outOfPlane = std::abs(up.dot(lateral));
-      if (outOfPlane > kMostOutOfPlane && outOfPlane > nearest) continue;
+      if (outOfPlane > kMaxOutOfPlane && outOfPlane > nearest) continue;
       up = (up - up.dot(lateral) * lateral).normalized();
-      for (const double left : {1.0, -1.0}) guesses.push_back({up, (left * lateral).cross(up)});
+      for (const double left : {1.0, -1.0}) hypotheses.push_back({up, (left * lateral).cross(up)});
     }
   }
-  return guesses;
+  return hypotheses;
 }
 
 // What a bone of VRM is; a joint of the spine where it is one of these.
@@ -135,17 +135,18 @@ BodyReading::BodyReading(const Skeleton& read, const Pose& pose, bool names, boo
       body(foldBody(tree, positions,
                     names ? partnersOf(skeleton, words, convention) : std::vector<std::optional<NamedPartner>>())),
       measures(body, words),
-      guesses(guessesFor(body.lateral)) {
+      hypotheses(hypothesesFor(body.lateral)) {
   const int left = body.sidesByName ? 1 : declaredLeft(skeleton, body, declared);
-  std::erase_if(guesses, [&](const Axes& guess) { return left * guess.left().dot(body.lateral) < 0; });
+  std::erase_if(hypotheses, [&](const Axes& hypothesis) { return left * hypothesis.left().dot(body.lateral) < 0; });
   if (body.hasPairs) return;
-  const std::vector<Axes> across = guessesFor(Vec3::UnitZ());
-  guesses.insert(guesses.end(), across.begin(), across.end());
+  const std::vector<Axes> across = hypothesesFor(Vec3::UnitZ());
+  hypotheses.insert(hypotheses.end(), across.begin(), across.end());
 }
 
-double axesScore(const BodyMeasures& measures, const Axes& guess, const PartField& field, const PartWeights& weights) {
+double axesScore(const BodyMeasures& measures, const Axes& hypothesis, const PartField& field,
+                 const PartWeights& weights) {
   double score = kAxesByLabels * field.logSum();
-  for (const ActiveFeature& feature : measures.axesFeatures(guess)) {
+  for (const ActiveFeature& feature : measures.axesFeatures(hypothesis)) {
     score += static_cast<double>(feature.value * weights.axes[feature.number]);
   }
   return score;

@@ -27,7 +27,7 @@ struct BodyReading {
   BodyMeasures measures;
   // Left or right along the fold's lateral, as the file declares it or else both; up along any axis that lies in its
   // plane.
-  std::vector<Axes> guesses;
+  std::vector<Axes> hypotheses;
 };
 
 // How much all labellings under a guess say for it: their scores count each joint as if it were independent of the
@@ -35,7 +35,8 @@ struct BodyReading {
 inline constexpr double kAxesByLabels = 0.3;
 
 // Logarithm of a guess's probability, but for a constant: by its labellings, names for sides and the habits of files.
-double axesScore(const BodyMeasures& measures, const Axes& guess, const PartField& field, const PartWeights& weights);
+double axesScore(const BodyMeasures& measures, const Axes& hypothesis, const PartField& field,
+                 const PartWeights& weights);
 
 // readAnatomy with other weights than the fitted ones: for the tool that fits them.
 Anatomy readAnatomyWith(const PartWeights& weights, const Skeleton& skeleton, const Pose& pose,

@@ -11,15 +11,15 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kMostCompared = 64;  // children of one joint; a hand has five
-constexpr double kLeastAcross = 1e-3;      // of the body's size: joints nearer to the plane are no pair
+constexpr std::size_t kMaxCompared = 64;  // children of one joint; a hand has five
+constexpr double kMinWidth = 1e-3;        // of the body's size: joints nearer to the plane are no pair
 // Costs of a pair, each 0 for mirror images: lengths and counts as shares of the greater, places in lengths of what
 // hangs there. A limb turned by 90 degrees about where it begins costs about 0.7.
-constexpr double kMostUnlike = 0.35;  // share of length, and of joints
-constexpr double kMostCost = 1.2;     // of the sum: a limb may be turned by 90 degrees and be as unlike besides
-constexpr double kNamedCost = 0.1;    // of partners by name that are not alike at all
+constexpr double kMaxDifference = 0.35;  // share of length, and of joints
+constexpr double kMaxCost = 1.2;         // of the sum: a limb may be turned by 90 degrees and be as unlike besides
+constexpr double kNamedCost = 0.1;       // of partners by name that are not alike at all
 // Of the labelled skeletons those without left and right have at most 0.04 by chance, all others at least 0.11.
-constexpr double kLeastPaired = 0.07;
+constexpr double kMinPaired = 0.07;
 constexpr double kContradict = 0.2;  // share of named limbs that lie the other way round than the rest
 constexpr double kClearly = 1.25;    // times the length that has partners
 constexpr double kNearPlane = 0.01;  // of the body's size: what is that near to the plane lies in it
@@ -75,9 +75,9 @@ class Folder {
       if (paired <= most + 1e-9 * size_) continue;
       most = paired;
       best = body_;
-      best.pairedShare = allBones_ > 0 ? paired_ / allBones_ : 0;
+      best.pairedFraction = allBones_ > 0 ? paired_ / allBones_ : 0;
     }
-    best.hasPairs = best.pairedShare > kLeastPaired;
+    best.hasPairs = best.pairedFraction > kMinPaired;
     if (best.hasPairs) return best;
     // Where nothing is a pair no joint has a side.
     body_ = {};
@@ -94,7 +94,7 @@ class Folder {
       const std::span<const Index> children = compared(tree_.children(j));
       for (std::size_t a = 0; a < children.size(); ++a) {
         for (std::size_t b = a + 1; b < children.size(); ++b) {
-          if (unlikeness(children[a], children[b]) > kMostUnlike / 2) continue;
+          if (unlikeness(children[a], children[b]) > kMaxDifference / 2) continue;
           const Vec3 across = middle_[children[a]] - middle_[children[b]];
           const double reach = length_[children[a]] + length_[children[b]];
           if (across.norm() > 1e-9 * size_) spread += reach * across.normalized() * across.normalized().transpose();
@@ -109,13 +109,13 @@ class Folder {
   }
 
   static std::span<const Index> compared(std::span<const Index> children) {
-    return children.first(std::min(children.size(), kMostCompared));
+    return children.first(std::min(children.size(), kMaxCompared));
   }
 
   double across(const Vec3& point) const { return body_.lateral.dot(point); }
   Vec3 mirrored(const Vec3& point, double plane) const { return point - 2 * (across(point) - plane) * body_.lateral; }
 
-  static double shareOf(double a, double b) { return std::abs(a - b) / std::max({a, b, 1e-12}); }
+  static double fractionOf(double a, double b) { return std::abs(a - b) / std::max({a, b, 1e-12}); }
   // Of all bones that hang there, with the one that it hangs on.
   double lengthWithBone(Index joint) const {
     const std::optional<Index>& parent = tree_.parent(joint);
@@ -123,8 +123,8 @@ class Folder {
   }
   double unlikeness(Index a, Index b) const {
     return std::max(
-        shareOf(lengthWithBone(a), lengthWithBone(b)),
-        0.7 * shareOf(static_cast<double>(tree_.subtree(a).size()), static_cast<double>(tree_.subtree(b).size())));
+        fractionOf(lengthWithBone(a), lengthWithBone(b)),
+        0.7 * fractionOf(static_cast<double>(tree_.subtree(a).size()), static_cast<double>(tree_.subtree(b).size())));
   }
 
   // None where they cannot be partners.
@@ -132,22 +132,22 @@ class Folder {
     if (areNamed(a, b))
       return isNamedFirst(a, b, plane) ? std::optional(kNamedCost * std::min(unlikeness(a, b), 1.0)) : std::nullopt;
     const double unlike = unlikeness(a, b);
-    if (unlike > kMostUnlike) return std::nullopt;
+    if (unlike > kMaxDifference) return std::nullopt;
     const double one = across(middle_[a]) - plane, other = across(middle_[b]) - plane;
-    if (one - other < 2 * kLeastAcross * size_) return std::nullopt;  // `a` is on the positive side
+    if (one - other < 2 * kMinWidth * size_) return std::nullopt;  // `a` is on the positive side
     const double reach = 0.5 * (length_[a] + length_[b]) +
                          0.5 * ((positions_[a] - from).norm() + (positions_[b] - from).norm()) + 1e-9 * size_;
     const double apart =
         (mirrored(middle_[a], plane) - middle_[b]).norm() + (mirrored(positions_[a], plane) - positions_[b]).norm();
     const double cost = apart / reach + unlike;
-    return cost < kMostCost ? std::optional(cost) : std::nullopt;
+    return cost < kMaxCost ? std::optional(cost) : std::nullopt;
   }
 
   bool areNamed(Index a, Index b) const { return !named_.empty() && named_[a] && named_[a]->partner == b; }
   // The one on the positive side; in one place the left one.
   bool isNamedFirst(Index a, Index b, double plane) const {
     const double one = across(middle_[a]) - plane, other = across(middle_[b]) - plane;
-    const bool apart = std::abs(one - other) > 2 * kLeastAcross * size_;
+    const bool apart = std::abs(one - other) > 2 * kMinWidth * size_;
     return apart && !sidesByName_ ? one > other : named_[a]->isLeft;
   }
 
@@ -181,7 +181,7 @@ class Folder {
   // Of what hangs on two partners: which side is which is known, and poses may turn it anywhere.
   std::optional<double> limbCost(Index a, Index b, double plane) const {
     const double unlike = areNamed(a, b) ? kNamedCost * unlikeness(a, b) : unlikeness(a, b);
-    if (unlike > 2 * kMostUnlike) return std::nullopt;
+    if (unlike > 2 * kMaxDifference) return std::nullopt;
     const double reach = length_[a] + length_[b] + 0.05 * size_;
     return (mirrored(positions_[a], plane) - positions_[b]).norm() / reach + unlike;
   }
@@ -200,12 +200,13 @@ class Folder {
   };
 
   void foldForest() {
-    std::vector<double> places;
-    for (const Vec3& position : positions_) places.push_back(across(position));
+    std::vector<double> coordinates;
+    for (const Vec3& position : positions_) coordinates.push_back(across(position));
     double plane = 0;
-    if (!places.empty()) {
-      std::nth_element(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(places.size() / 2), places.end());
-      plane = places[places.size() / 2];
+    if (!coordinates.empty()) {
+      std::nth_element(coordinates.begin(), coordinates.begin() + static_cast<std::ptrdiff_t>(coordinates.size() / 2),
+                       coordinates.end());
+      plane = coordinates[coordinates.size() / 2];
     }
     std::vector<Open> open;
     placeChildren(tree_.roots(), std::nullopt, plane, open);
@@ -296,7 +297,7 @@ class Folder {
 
   void count(const Pair& pair, std::optional<Index> parent) {
     const double bone = parent ? (positions_[pair.a] - positions_[*parent]).norm() : 0;
-    paired_ += bone * std::max(0.0, 1 - pair.cost / kMostCost);
+    paired_ += bone * std::max(0.0, 1 - pair.cost / kMaxCost);
   }
 
   const JointTree& tree_;

@@ -29,7 +29,7 @@ struct NamedPartner {
 struct HalfBody {
   std::vector<HalfJoint> joints;  // parents first; every joint of the skeleton stands in exactly one
   Vec3 lateral = Vec3::UnitX();   // across the plane of symmetry, of length 1; which side is left it does not tell
-  double pairedShare = 0;         // of the length of all bones, less where they are no mirror images
+  double pairedFraction = 0;      // of the length of all bones, less where they are no mirror images
   bool sidesByName = false;       // names, not places, tell which of a pair is which: the first is the left one
   bool hasPairs = false;          // else `lateral` is a guess
 };

@@ -83,7 +83,7 @@ TEST(HalfBody, PairedBonesAreWhatIsNotInTheMiddle) {
     all += length;
     if (person.parts[j].side == Side::kLeft) sides += length;
   }
-  EXPECT_NEAR(folded(person.skeleton).pairedShare, sides / all, 1e-9) << "counted once for both sides";
+  EXPECT_NEAR(folded(person.skeleton).pairedFraction, sides / all, 1e-9) << "counted once for both sides";
 }
 
 TEST(HalfBody, AnArmThatIsTurnedKeepsItsPartner) {
@@ -102,7 +102,7 @@ TEST(HalfBody, AnyPlaneIsFound) {
   const HalfBody upright = folded(person.skeleton),
                  turned = folded(limber::testing::turnedAsAWhole(person.skeleton, turn));
   EXPECT_NEAR(std::abs(turned.lateral.dot(turn * upright.lateral)), 1, 1e-6);
-  EXPECT_NEAR(turned.pairedShare, upright.pairedShare, 1e-6);
+  EXPECT_NEAR(turned.pairedFraction, upright.pairedFraction, 1e-6);
 }
 
 TEST(HalfBody, WithoutPairsNothingHasASide) {

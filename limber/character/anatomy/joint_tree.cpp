@@ -41,7 +41,7 @@ JointTree::JointTree(std::vector<std::optional<Index>> parents) : parents_(std::
     if (parents_[j]) children_[filled[*parents_[j]]++] = j;
   }
 
-  place_.assign(joints, 0);
+  index_.assign(joints, 0);
   count_.assign(joints, 1);
   depth_.assign(joints, 0);
   order_.reserve(joints);
@@ -49,7 +49,7 @@ JointTree::JointTree(std::vector<std::optional<Index>> parents) : parents_(std::
   while (!open.empty()) {
     const Index joint = open.back();
     open.pop_back();
-    place_[joint] = static_cast<Index>(order_.size());
+    index_[joint] = static_cast<Index>(order_.size());
     order_.push_back(joint);
     if (parents_[joint]) depth_[joint] = depth_[*parents_[joint]] + 1;
     const std::span<const Index> below = children(joint);

@@ -26,11 +26,11 @@ class JointTree {
   // Every joint, parents before children; what hangs on a joint follows it without a gap.
   std::span<const Index> order() const { return order_; }
   // A joint and all that hangs on it.
-  std::span<const Index> subtree(Index joint) const { return order().subspan(place_[joint], count_[joint]); }
+  std::span<const Index> subtree(Index joint) const { return order().subspan(index_[joint], count_[joint]); }
   Index depth(Index joint) const { return depth_[joint]; }
 
   // O(1).
-  bool isAboveOrSelf(Index above, Index joint) const { return place_[joint] - place_[above] < count_[above]; }
+  bool isAboveOrSelf(Index above, Index joint) const { return index_[joint] - index_[above] < count_[above]; }
   // The lowest joint that both hang on or are; none where they have different roots. O(depth between).
   std::optional<Index> meeting(Index one, Index other) const;
   // The joints below `above` down to `joint`, `joint` included; empty where it is `above` or does not hang on it.
@@ -42,7 +42,7 @@ class JointTree {
   std::vector<std::optional<Index>> parents_;  // #J
   std::vector<Index> firstChild_, children_;   // #J + 1 offsets into the children, in order of their numbers
   std::vector<Index> roots_;
-  std::vector<Index> order_, place_;  // #J, preorder; where each joint stands in it
+  std::vector<Index> order_, index_;  // #J, preorder; where each joint stands in it
   std::vector<Index> count_, depth_;  // #J, of the subtree; 0 of roots
 };
 

@@ -11,10 +11,10 @@ namespace {
 
 // Heights over the lowest joint and lengths along the ground, in heights of the skeleton. Measured on the shared rigs
 // with feet or legs on a root of their own: each bound lies midway between what is joined there and what is not.
-constexpr double kMostRootHeight = 0.3, kMostFootHeight = 0.15;  // of the root, and of the foot with all it carries
-constexpr double kLeastDrop = 0.08;                              // from the shin to the foot, from the knee's parent
-constexpr double kMostShinHeight = 0.45, kMostHipHeight = 0.7;   // of the shin's and the hip's joint
-constexpr double kMostAside = 0.16;                              // of the foot from under its shin
+constexpr double kMaxRootHeight = 0.3, kMaxFootHeight = 0.15;  // of the root, and of the foot with all it carries
+constexpr double kMinDrop = 0.08;                              // from the shin to the foot, from the knee's parent
+constexpr double kMaxShinHeight = 0.45, kMaxHipHeight = 0.7;   // of the shin's and the hip's joint
+constexpr double kMaxAside = 0.16;                             // of the foot from under its shin
 
 class LegJoiner {
  public:
@@ -79,29 +79,29 @@ class LegJoiner {
   }
 
   bool isLooseLeg(Index joint) const {
-    return isBesideOthersOnTheGround(joint) && height(joint) >= kMostFootHeight && height(joint) <= kMostHipHeight &&
-           lowBelow_[joint] < kMostFootHeight && highBelow_[joint] <= height(joint);
+    return isBesideOthersOnTheGround(joint) && height(joint) >= kMaxFootHeight && height(joint) <= kMaxHipHeight &&
+           lowBelow_[joint] < kMaxFootHeight && highBelow_[joint] <= height(joint);
   }
 
   // No shin hangs on one: joined feet never hang on each other.
   bool isLooseFoot(Index joint) const {
-    return (!tree_.parent(joint) || isBesideOthersOnTheGround(joint)) && highBelow_[joint] < kMostFootHeight;
+    return (!tree_.parent(joint) || isBesideOthersOnTheGround(joint)) && highBelow_[joint] < kMaxFootHeight;
   }
 
   bool isBesideOthersOnTheGround(Index joint) const {
     const std::optional<Index> parent = tree_.parent(joint);
-    return parent && height(*parent) < kMostRootHeight && tree_.children(*parent).size() > 1;
+    return parent && height(*parent) < kMaxRootHeight && tree_.children(*parent).size() > 1;
   }
 
   // The end of a limb that comes down to the foot but does not carry it.
   std::optional<Index> shinOver(Index foot) const {
     std::optional<Index> best;
-    double nearest = kMostAside * (highest_ - lowest_);
+    double nearest = kMaxAside * (highest_ - lowest_);
     for (Index j = 0; j < tree_.size(); ++j) {
       const std::optional<Index> parent = tree_.parent(j);
       if (!tree_.children(j).empty() || !parent) continue;
-      if (height(j) < height(foot) + kLeastDrop || height(j) > kMostShinHeight) continue;
-      if (height(*parent) < height(j) + kLeastDrop) continue;
+      if (height(j) < height(foot) + kMinDrop || height(j) > kMaxShinHeight) continue;
+      if (height(*parent) < height(j) + kMinDrop) continue;
       const Vec3 offset = positions_[j] - positions_[foot];
       const double aside = (offset - offset.dot(up_) * up_).norm();
       if (aside >= nearest) continue;

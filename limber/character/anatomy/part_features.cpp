@@ -73,7 +73,7 @@ enum FigureName : std::size_t {
   kOverFree,
   kDepth,
   kShape,
-  kTreeShare,
+  kTreeFraction,
   kMiddleBelow,
   kPathUp,
   kPathForward,
@@ -178,14 +178,14 @@ enum AxesFeature : std::size_t {
   kAxesFeatures
 };
 
-constexpr double kTiny = 1e-9;          // of the body's size: shorter is rounding
-constexpr std::size_t kMostLimbs = 64;  // a millipede's would say no more
+constexpr double kTiny = 1e-9;         // of the body's size: shorter is rounding
+constexpr std::size_t kMaxLimbs = 64;  // a millipede's would say no more
 
 // Fills a table row by row: room for a row's every feature is made before, so that nothing is checked on the way.
 class RowWriter {
  public:
   RowWriter(BodyMeasures::Table& table, std::size_t rows) : table_(table) {
-    table.list.resize(rows * kMostActive);
+    table.list.resize(rows * kMaxActive);
     table.rows.reserve(rows + 1);
     table.rows.push_back(0);
     at_ = table.list.data();
@@ -199,22 +199,22 @@ class RowWriter {
   void mark(std::size_t feature, float value = 1) { *at_++ = {static_cast<std::uint16_t>(feature), value}; }
   // Between two knots both, by how near they are.
   void tell(FigureName name, double value) {
-    const Figure& told = kFigureTable[name];
-    const std::size_t base = kLayout.begin[name] + kind_ * told.count;
+    const Figure& figure = kFigureTable[name];
+    const std::size_t base = kLayout.begin[name] + kind_ * figure.count;
     const auto v = static_cast<float>(value);
-    if (!(v > told.knots[0])) return mark(base);
-    for (std::size_t k = 1; k < told.count; ++k) {
-      if (v >= told.knots[k]) continue;
-      const float share = (v - told.knots[k - 1]) / (told.knots[k] - told.knots[k - 1]);
-      if (share < 1) mark(base + k - 1, 1 - share);
-      if (share > 0) mark(base + k, share);
+    if (!(v > figure.knots[0])) return mark(base);
+    for (std::size_t k = 1; k < figure.count; ++k) {
+      if (v >= figure.knots[k]) continue;
+      const float fraction = (v - figure.knots[k - 1]) / (figure.knots[k] - figure.knots[k - 1]);
+      if (fraction < 1) mark(base + k - 1, 1 - fraction);
+      if (fraction > 0) mark(base + k, fraction);
       return;
     }
-    mark(base + told.count - 1);
+    mark(base + figure.count - 1);
   }
 
  private:
-  static constexpr std::size_t kMostActive = 2 * kFigures + kNameMarks + 6;  // of one half joint
+  static constexpr std::size_t kMaxActive = 2 * kFigures + kNameMarks + 6;  // of one half joint
   BodyMeasures::Table& table_;
   ActiveFeature* at_;
   std::size_t kind_ = 0;
@@ -316,9 +316,9 @@ BodyMeasures::BodyMeasures(const HalfBody& body, std::span<const JointWords> wor
   }
   counted_ = limbs_;
   const auto lengthOf = [&](Index limb) { return reach_[limb] + bone_[limb]; };
-  if (counted_.size() > kMostLimbs) {
+  if (counted_.size() > kMaxLimbs) {
     std::stable_sort(counted_.begin(), counted_.end(), [&](Index a, Index b) { return lengthOf(a) > lengthOf(b); });
-    counted_.resize(kMostLimbs);
+    counted_.resize(kMaxLimbs);
   }
   measureSize();
   tellSteady();
@@ -351,9 +351,9 @@ double BodyMeasures::isLong(Index limb) const {
 }
 
 Vec3 BodyMeasures::directionOf(Index from, Index to) const {
-  const Vec3 way = body_->joints[to].at - body_->joints[from].at;
-  const double length = way.norm();
-  return length > kTiny * size_ ? Vec3(way / length) : Vec3(Vec3::Zero());
+  const Vec3 displacement = body_->joints[to].at - body_->joints[from].at;
+  const double length = displacement.norm();
+  return length > kTiny * size_ ? Vec3(displacement / length) : Vec3(Vec3::Zero());
 }
 
 // Where the joint's own bone goes: to what goes on from it, of a tip from its parent.
@@ -425,7 +425,7 @@ void BodyMeasures::tellSteady() {
       row.tell(kTrunkRun, trunkRun[i]);
     }
     row.tell(kDepth, depth_[i]);
-    row.tell(kTreeShare, static_cast<double>(count_[rootOf_[i]]) / static_cast<double>(n));
+    row.tell(kTreeFraction, static_cast<double>(count_[rootOf_[i]]) / static_cast<double>(n));
     row.tell(kSiblingReach,
              half.parent ? (reach_[i] + bone_[i]) / std::max(longestChild_[*half.parent][kind], kTiny) : 1);
     row.mark(kLayout.kind + kind);

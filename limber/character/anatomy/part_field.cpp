@@ -70,12 +70,13 @@ void PartField::sumUp() {
       continue;
     }
     const double most = *std::max_element(below_[i].begin(), below_[i].end());
-    Scores shares;
+    Scores fractions;
     for (std::size_t c = 0; c < kPartStates; ++c)
-      shares[c] = below_[i][c] > most - 60 ? std::exp(below_[i][c] - most) : 0;
+      fractions[c] = below_[i][c] > most - 60 ? std::exp(below_[i][c] - most) : 0;
     for (std::size_t p = 0; p < kPartStates; ++p) {
       double sum = 0;
-      for (const std::uint8_t c : weights_.followers[p]) sum += shares[c] * weights_.followFactor[p * kPartStates + c];
+      for (const std::uint8_t c : weights_.followers[p])
+        sum += fractions[c] * weights_.followFactor[p * kPartStates + c];
       toParent_[i][p] = sum > 0 ? most + std::log(sum) : kImpossible;
       below_[*parent][p] += toParent_[i][p];
     }

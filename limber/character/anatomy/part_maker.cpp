@@ -42,7 +42,7 @@ class PartMaker {
 
   std::vector<Part> make() {
     const std::vector<HalfJoint>& joints = reading_.body.joints;
-    for (Index i = 0; i < joints.size(); ++i) place(i);
+    for (Index i = 0; i < joints.size(); ++i) indices(i);
     joinFeet();
     joinTrunks();
     giveFeetToes();
@@ -90,7 +90,7 @@ class PartMaker {
            kind == PartKind::kAttachment;
   }
 
-  void place(Index half) {
+  void indices(Index half) {
     const HalfJoint& joint = reading_.body.joints[half];
     const PartKind kind = kindAt(half);
     if (kind == PartKind::kOther) return;
@@ -324,8 +324,8 @@ class PartMaker {
       const double length = lengthOf(*sure), low = lowestOf(*sure);
       for (Part& part : parts_) {
         if (part.kind != kind || part.joints.empty() || part.confidence >= kDoubtful) continue;
-        const bool stands = kind == PartKind::kLeg && lowestOf(part) < low + kOffTheGround * length;
-        if (lengthOf(part) > kAsLong * length && (stands || kind == PartKind::kArm)) continue;
+        const bool isStanding = kind == PartKind::kLeg && lowestOf(part) < low + kOffTheGround * length;
+        if (lengthOf(part) > kAsLong * length && (isStanding || kind == PartKind::kArm)) continue;
         part.kind = PartKind::kAttachment;
         for (std::optional<Index>* landmark : {&part.upper, &part.middle, &part.hock, &part.end, &part.toes})
           landmark->reset();
@@ -459,7 +459,7 @@ class PartMaker {
 
   // The trunk first, carriers before what they carry, else as they are found.
   void order() {
-    std::vector<std::size_t> sorted(parts_.size()), place(parts_.size());
+    std::vector<std::size_t> sorted(parts_.size()), indices(parts_.size());
     std::vector<Index> depth(parts_.size(), 0);
     for (std::size_t p = 0; p < parts_.size(); ++p) {
       sorted[p] = p;
@@ -474,16 +474,16 @@ class PartMaker {
                         parts_[p].side);
     };
     std::stable_sort(sorted.begin(), sorted.end(), [&](std::size_t a, std::size_t b) { return rank(a) < rank(b); });
-    std::size_t places = 0;
+    std::size_t slots = 0;
     for (const std::size_t p : sorted) {
-      place[p] = places;
-      if (!parts_[p].joints.empty()) ++places;
+      indices[p] = slots;
+      if (!parts_[p].joints.empty()) ++slots;
     }
     std::vector<Part> ordered;
     for (const std::size_t p : sorted) {
       if (parts_[p].joints.empty()) continue;
       ordered.push_back(std::move(parts_[p]));
-      if (ordered.back().carrier) ordered.back().carrier = place[*ordered.back().carrier];
+      if (ordered.back().carrier) ordered.back().carrier = indices[*ordered.back().carrier];
     }
     parts_ = std::move(ordered);
   }

@@ -18,10 +18,10 @@ Skeleton symmetric(std::mt19937& random, const std::vector<std::array<const char
   std::uniform_real_distribution<double> length(0.1, 1);
   Skeleton skeleton;
   std::vector<Affine> globals;
-  const auto add = [&](std::string name, std::optional<Index> parent, const Vec3& place) {
+  const auto add = [&](std::string name, std::optional<Index> parent, const Vec3& position) {
     Affine global = Affine::Identity();
     global.linear() = randomRotation(random).toRotationMatrix();
-    global.translation() = place;
+    global.translation() = position;
     Joint joint;
     joint.name = std::move(name);
     joint.parent = parent;
@@ -38,8 +38,8 @@ Skeleton symmetric(std::mt19937& random, const std::vector<std::array<const char
     const Vec3 offset(length(random), length(random), length(random));
     const Vec3 left(middle + offset.x(), 2 + offset.y(), offset.z());
     for (std::size_t side = 0; side < 2; ++side) {
-      const Vec3 place(side == 0 ? left.x() : 2 * middle - left.x(), left.y(), left.z());
-      ends[side] = add(pair[side], ends[side], place);
+      const Vec3 position(side == 0 ? left.x() : 2 * middle - left.x(), left.y(), left.z());
+      ends[side] = add(pair[side], ends[side], position);
     }
   }
   return skeleton;

@@ -11,9 +11,9 @@ namespace {
 
 // Mean height over mean distance along the ground; 0.2 to 0.5; a snake's is less, a bird's more whatever its wings; set
 // by hand.
-constexpr double kStands = 0.3;
+constexpr double kStandingHeight = 0.3;
 
-constexpr Index kMostPairs = 2;  // pairs; 2 alone (hind and fore); that are solved for; more go by their joint angles
+constexpr Index kMaxPairs = 2;  // pairs; 2 alone (hind and fore); that are solved for; more go by their joint angles
 
 // The matched joints of one leg, hip to toes.
 struct MatchedLeg {
@@ -64,7 +64,7 @@ struct HeightsOf {
 };
 
 // Whether it comes down from the body to the ground in both.
-bool stands(const AnimalLeg& leg, const HeightsOf& source, const HeightsOf& target) {
+bool isStanding(const AnimalLeg& leg, const HeightsOf& source, const HeightsOf& target) {
   return std::max(source.over(leg.source.end), target.over(leg.target.end)) < kLow &&
          std::max(source.over(leg.source.upper), target.over(leg.target.upper)) >= kBegins &&
          source.isSteep(leg.source.upper, leg.source.end) && target.isSteep(leg.target.upper, leg.target.end);
@@ -99,23 +99,23 @@ std::optional<AnimalLeg> legOf(const MatchedLeg& leg, const Skeleton& source, co
 
 }  // namespace
 
-bool BodySize::stands() const {
-  return height > kStands * spread;
+bool BodySize::isStanding() const {
+  return height > kStandingHeight * spread;
 }
 
 BodySize bodySize(const SkeletonMap& map, MapSide side, const NeutralPose& neutral) {
   Box box;
   BodySize size;
   const std::vector<Index> joints = matchedJoints(map, side);
-  const double share = 1 / static_cast<double>(joints.size());
+  const double fraction = 1 / static_cast<double>(joints.size());
   Vec3 middle = Vec3::Zero();
   for (const Index joint : joints) {
     box.add(neutral.restPositions[joint]);
-    middle += share * neutral.restPositions[joint];
+    middle += fraction * neutral.restPositions[joint];
   }
   for (const Index joint : joints) {
     const Vec3 offset = neutral.restPositions[joint] - middle;
-    size.spread += share * std::hypot(offset.x(), offset.z());
+    size.spread += fraction * std::hypot(offset.x(), offset.z());
   }
   size.height = middle.y() - box.min.y();
   size.across = box.diagonal();
@@ -125,19 +125,19 @@ BodySize bodySize(const SkeletonMap& map, MapSide side, const NeutralPose& neutr
 std::vector<AnimalLeg> animalLegs(const SkeletonMap& map, const Skeleton& source, const Skeleton& target,
                                   const NeutralPose& sourceNeutral, const NeutralPose& targetNeutral) {
   std::vector<AnimalLeg> legs;
-  const bool stand = bodySize(map, MapSide::kSource, sourceNeutral).stands() &&
-                     bodySize(map, MapSide::kTarget, targetNeutral).stands();
+  const bool stand = bodySize(map, MapSide::kSource, sourceNeutral).isStanding() &&
+                     bodySize(map, MapSide::kTarget, targetNeutral).isStanding();
   if (!map.isQuadruped() && !stand) return legs;
   Index pairs = 0;
   for (const JointMatch& match : map.matches) {
     if (match.part.kind == PartKind::kLeg) pairs = std::max(pairs, match.part.pair + 1);
   }
-  if (pairs > kMostPairs) return legs;
+  if (pairs > kMaxPairs) return legs;
   const HeightsOf from(map, MapSide::kSource, sourceNeutral), to(map, MapSide::kTarget, targetNeutral);
   for (Index pair = 0; pair < pairs; ++pair) {
     for (const Side side : kSides) {
       std::optional<AnimalLeg> leg = legOf(matchedLeg(map, side, pair), source, target, targetNeutral);
-      if (!leg || (pairs == 1 && !stands(*leg, from, to))) continue;
+      if (!leg || (pairs == 1 && !isStanding(*leg, from, to))) continue;
       leg->fore = pair == 0 && pairs > 1;
       legs.push_back(*leg);
     }

@@ -27,7 +27,7 @@ struct BodySize {
   double across = 0;
   double spread = 0;  // mean distance from their middle, along the ground: tips of wings count little
   // Else it lies flat, as a snake does.
-  bool stands() const;
+  bool isStanding() const;
 };
 BodySize bodySize(const SkeletonMap& map, MapSide side, const NeutralPose& neutral);
 

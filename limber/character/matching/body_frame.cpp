@@ -39,15 +39,15 @@ void BodyKinematics::update(Index begin, Index end, const Pose& pose, BodyFrame&
   }
 }
 
-void BodyKinematics::place(const Pose& pose, BodyFrame& frame) const {
-  placeRange(0, skeleton_->jointCount(), pose, frame);
+void BodyKinematics::update(const Pose& pose, BodyFrame& frame) const {
+  updateRange(0, skeleton_->jointCount(), pose, frame);
 }
 
-void BodyKinematics::placeBelow(Index joint, const Pose& pose, BodyFrame& frame) const {
-  placeRange(joint, ends_[joint], pose, frame);
+void BodyKinematics::updateBelow(Index joint, const Pose& pose, BodyFrame& frame) const {
+  updateRange(joint, ends_[joint], pose, frame);
 }
 
-void BodyKinematics::placeRange(Index begin, Index end, const Pose& pose, BodyFrame& frame) const {
+void BodyKinematics::updateRange(Index begin, Index end, const Pose& pose, BodyFrame& frame) const {
   for (Index j = begin; j < end; ++j) {
     const Vec3 offset = parentRotation(j, frame) * Vec3(units_[j] * pose.locals[j].translation);
     frame.positions[j] = parentPosition(j, frame) + offset;

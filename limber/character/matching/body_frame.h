@@ -27,8 +27,8 @@ class BodyKinematics {
   // Of a joint and of what hangs on it, where nothing else has changed.
   void globalsBelow(Index joint, const Pose& pose, BodyFrame& frame) const;
   // Positions from rotations that are there already, and from the locals' translations.
-  void place(const Pose& pose, BodyFrame& frame) const;
-  void placeBelow(Index joint, const Pose& pose, BodyFrame& frame) const;
+  void update(const Pose& pose, BodyFrame& frame) const;
+  void updateBelow(Index joint, const Pose& pose, BodyFrame& frame) const;
 
   Quat parentRotation(Index joint, const BodyFrame& frame) const {
     const auto& parent = skeleton_->joints[joint].parent;
@@ -43,7 +43,7 @@ class BodyKinematics {
 
  private:
   void update(Index begin, Index end, const Pose& pose, BodyFrame& frame) const;
-  void placeRange(Index begin, Index end, const Pose& pose, BodyFrame& frame) const;
+  void updateRange(Index begin, Index end, const Pose& pose, BodyFrame& frame) const;
 
   const Skeleton* skeleton_;
   Quat toBody_;

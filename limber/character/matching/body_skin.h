@@ -12,7 +12,7 @@ namespace limber {
 
 // Positions in the frames of the joints that carry them (their rotations, metres).
 struct BodySkin {
-  std::vector<Vec3> places;
+  std::vector<Vec3> positions;
   std::vector<Index> joints;
 };
 

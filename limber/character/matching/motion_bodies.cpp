@@ -62,11 +62,11 @@ std::optional<Body> bodyBelow(const Skeleton& all, Index root) {
   if (skeleton.jointCount() < kFewJoints) return std::nullopt;
   const Anatomy anatomy = readAnatomy(skeleton);
   const Part *left = anatomy.find(PartKind::kLeg, Side::kLeft), *right = anatomy.find(PartKind::kLeg, Side::kRight);
-  const bool stands = left && right && std::min(left->confidence, right->confidence) >= kDoubtful;
+  const bool isStanding = left && right && std::min(left->confidence, right->confidence) >= kDoubtful;
   const bool isWhole = anatomy.find(PartKind::kTrunk) &&
                        (anatomy.find(PartKind::kHead) || anatomy.find(PartKind::kArm, Side::kLeft) ||
                         anatomy.find(PartKind::kWing, Side::kLeft) || anatomy.pairsOf(PartKind::kLeg) > 1);
-  if (!stands || !isWhole) return std::nullopt;
+  if (!isStanding || !isWhole) return std::nullopt;
   const auto inAll = [&](Index joint) {
     return static_cast<Index>(std::find(kept.begin(), kept.end(), joint) - kept.begin());
   };

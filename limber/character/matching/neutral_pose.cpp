@@ -180,9 +180,9 @@ std::vector<LimbBone> limbBones() {
 void carry(const Skeleton& skeleton, std::span<const LooseJoint> loose, const std::vector<Vec3>& rest,
            const std::vector<Quat>& turns, std::vector<Vec3>& positions) {
   for (const auto& [joint, carrier, matched] : loose) {
-    const Vec3 way = positions[carrier] + turns[carrier] * (rest[joint] - rest[carrier]) - positions[joint];
+    const Vec3 displacement = positions[carrier] + turns[carrier] * (rest[joint] - rest[carrier]) - positions[joint];
     for (Index j = joint; j < skeleton.jointCount(); ++j) {
-      if (isAncestorOrSelf(skeleton, joint, j)) positions[j] += way;
+      if (isAncestorOrSelf(skeleton, joint, j)) positions[j] += displacement;
     }
   }
 }
@@ -204,8 +204,8 @@ void aimLimbs(const SkeletonMap& map, MapSide side, const std::vector<Vec3>& res
 }
 
 // The way through the first joints of parts; nothing where one is missing.
-double wayThrough(const SkeletonMap& map, MapSide side, const std::vector<Vec3>& rest,
-                  const std::array<BodyPart, 3>& parts) {
+double pathThrough(const SkeletonMap& map, MapSide side, const std::vector<Vec3>& rest,
+                   const std::array<BodyPart, 3>& parts) {
   double length = 0;
   for (std::size_t i = 1; i < parts.size(); ++i) {
     const std::optional<Index> from = firstOfPart(map, side, parts[i - 1]), to = firstOfPart(map, side, parts[i]);
@@ -237,7 +237,7 @@ void aimBentTrunk(const SkeletonMap& map, MapSide side, const std::vector<Vec3>&
   for (std::size_t i = 1; i < trunk.size(); ++i) length += (rest[trunk[i]] - rest[trunk[i - 1]]).norm();
   for (const Side each : kSides) {
     const auto lengthOf = [&](const auto& limb) {
-      return wayThrough(
+      return pathThrough(
           map, side, rest,
           {limb(each, Segment::kUpper, 0), limb(each, Segment::kMiddle, 0), limb(each, Segment::kEnd, 0)});
     };
@@ -274,7 +274,7 @@ std::vector<Index> matchedJoints(const SkeletonMap& map, MapSide side) {
   return joints;
 }
 
-bool standsUpright(const Skeleton& skeleton, const Pose& pose, const SkeletonMap& map, MapSide side) {
+bool isUpright(const Skeleton& skeleton, const Pose& pose, const SkeletonMap& map, MapSide side) {
   const Stance stance = stanceOf(skeleton, pose, map, side);
   if (!stance.isWhole()) return true;
   const auto isOpposite = [&](const Vec3& foot) { return angleOf(stance.head, foot) > kOpposite; };
@@ -284,7 +284,7 @@ bool standsUpright(const Skeleton& skeleton, const Pose& pose, const SkeletonMap
 
 Pose uprightPose(const Skeleton& skeleton, std::span<const Pose> motion, const SkeletonMap& map, MapSide side) {
   const Pose rest = restPose(skeleton);
-  if (standsUpright(skeleton, rest, map, side)) return rest;
+  if (isUpright(skeleton, rest, map, side)) return rest;
   const Pose* best = nullptr;
   double least = std::numeric_limits<double>::infinity();
   for (const Pose& pose : motion) {
@@ -312,7 +312,7 @@ NeutralPose neutralPoseIn(const Quat& toBody, const Skeleton& skeleton, const Po
   std::vector<Quat> restRotations;
   std::vector<Quat> turns(skeleton.jointCount(), Quat::Identity());
   Aims aims(skeleton.jointCount());
-  std::vector<bool> isFoot(skeleton.jointCount()), stands(skeleton.jointCount());
+  std::vector<bool> isFoot(skeleton.jointCount()), isStanding(skeleton.jointCount());
   for (Vec3& position : rest) position = pose.toBody * position;
   if (map.isBiped()) {
     aimLimbs(map, side, rest, aims);
@@ -329,7 +329,7 @@ NeutralPose neutralPoseIn(const Quat& toBody, const Skeleton& skeleton, const Po
                                toes = toesOf(skeleton, map, side, each, rest);
     if (!hip || !knee || !toes) continue;
     const bool hock = (rest[*toes] - rest[*foot]).norm() > kHock * (rest[*foot] - rest[*knee]).norm();
-    stands[*foot] = hock && angleOf(rest[*toes] - rest[*hip], -Vec3::UnitY()) < kFootGoesAlong;
+    isStanding[*foot] = hock && angleOf(rest[*toes] - rest[*hip], -Vec3::UnitY()) < kFootGoesAlong;
   }
 
   pose.positions.resize(skeleton.jointCount());
@@ -342,7 +342,7 @@ NeutralPose neutralPoseIn(const Quat& toBody, const Skeleton& skeleton, const Po
     if (aims[j] && angleOf(above * aims[j]->rest, aims[j]->neutral) >= aims[j]->tolerance) {
       turns[j] = (shortestRotation(above * aims[j]->rest, aims[j]->neutral) * above).normalized();
     }
-    const bool free = stands[j] || angleBetween(Quat::Identity(), above) < kFootGoesAlong;
+    const bool free = isStanding[j] || angleBetween(Quat::Identity(), above) < kFootGoesAlong;
     if (isFoot[j] && free) turns[j] = Quat::Identity();
     pose.rotations.push_back((turns[j] * restRotations[j]).normalized());
     pose.positions[j] =
@@ -371,17 +371,18 @@ std::optional<Index> toesOf(const Skeleton& skeleton, const SkeletonMap& map, Ma
   if (toes || !foot) return toes;
   std::optional<Index> tip;
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
-    const Vec3 way = rest[j] - rest[*foot];
-    if (skeleton.joints[j].parent != foot || way.z() <= 0 || way.y() >= 0) continue;
+    const Vec3 displacement = rest[j] - rest[*foot];
+    if (skeleton.joints[j].parent != foot || displacement.z() <= 0 || displacement.y() >= 0) continue;
     if (!tip || rest[j].z() > rest[*tip].z()) tip = j;
   }
   return tip;
 }
 
 bool isBent(std::span<const Index> joints, Index end, std::span<const Vec3> positions) {
-  double way = (positions[end] - positions[joints.back()]).norm();
-  for (std::size_t i = 1; i < joints.size(); ++i) way += (positions[joints[i]] - positions[joints[i - 1]]).norm();
-  return way > kBent * (positions[end] - positions[joints.front()]).norm();
+  double pathLength = (positions[end] - positions[joints.back()]).norm();
+  for (std::size_t i = 1; i < joints.size(); ++i)
+    pathLength += (positions[joints[i]] - positions[joints[i - 1]]).norm();
+  return pathLength > kBent * (positions[end] - positions[joints.front()]).norm();
 }
 
 std::vector<Index> soleJoints(const SkeletonMap& map, MapSide side) {

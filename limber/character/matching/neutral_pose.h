@@ -43,7 +43,7 @@ NeutralPose neutralPoseIn(const Quat& toBody, const Skeleton& skeleton, const Po
 // Does the person stand in that pose: legs and head on opposite sides of the hips? Some programs write motions whose
 // rest pose has all bones along one axis; it tells nothing (hasForm, rest_form.h), but where each leg is opposite to
 // the head all the same. True for skeletons without legs or head.
-bool standsUpright(const Skeleton& skeleton, const Pose& pose, const SkeletonMap& map, MapSide side);
+bool isUpright(const Skeleton& skeleton, const Pose& pose, const SkeletonMap& map, MapSide side);
 
 // The rest pose if the person stands in it, else the pose of the motion that is most like standing: legs in line with
 // the trunk, and the trunk up. In a frame of a motion gravity is along -Y, and the person faces anywhere: that pose is

@@ -139,15 +139,15 @@ TEST_F(NeutralPoses, AFoldedRestPoseGivesWayToAFrameThatStands) {
     if (joint.parent) joint.rest.translation = Vec3(joint.rest.translation.norm(), 0, 0);
   }
   const SkeletonMap map = matchSkeletons(person, person);
-  EXPECT_TRUE(standsUpright(person, restPose(person), map, MapSide::kSource));
-  EXPECT_FALSE(standsUpright(folded, restPose(folded), map, MapSide::kSource));
+  EXPECT_TRUE(isUpright(person, restPose(person), map, MapSide::kSource));
+  EXPECT_FALSE(isUpright(folded, restPose(folded), map, MapSide::kSource));
   Pose standing = restPose(folded), lying = standing;
   const Quat down = turn(-Vec3::UnitZ(), 90);
   for (const char* leg : {"leftUpperLeg", "rightUpperLeg"}) standing.locals[folded.find(leg).value()].rotation = down;
   standing.locals[folded.find("spine").value()].rotation = down.conjugate();
   const std::vector<Pose> motion = {lying, standing, lying};
   const Pose chosen = uprightPose(folded, motion, map, MapSide::kSource);
-  EXPECT_TRUE(standsUpright(folded, chosen, map, MapSide::kSource));
+  EXPECT_TRUE(isUpright(folded, chosen, map, MapSide::kSource));
 }
 
 // A frame is under gravity, and faces where the motion goes: what stands in for the rest pose is turned to face +Z and
@@ -175,7 +175,7 @@ TEST_F(NeutralPoses, AFrameOfAMotionKeepsItsHeading) {
 TEST_F(NeutralPoses, AMirroredFlatRestPoseDoesNotStand) {
   const PoseSequence standing{{restPose(person)}, 1.0 / 30};
   const auto [flat, motion] = limber::testing::withZeroedAxes(person, standing, true, turn(Vec3::UnitZ(), 90));
-  EXPECT_FALSE(standsUpright(flat, restPose(flat), matchSkeletons(person, person), MapSide::kSource));
+  EXPECT_FALSE(isUpright(flat, restPose(flat), matchSkeletons(person, person), MapSide::kSource));
 }
 
 }  // namespace

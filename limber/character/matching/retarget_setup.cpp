@@ -51,22 +51,23 @@ LowestHeights lowestHeights(const BodyKinematics& kinematics, const NeutralPose&
     heights.all.push_back(frame.positions[*low].y());
     const Quat turn = frame.rotations[*low] * neutral.rotations[*low].conjugate();
     if ((turn * Vec3::UnitY()).y() > 0) ++heights.soleDown;
-    const double stillWay = kStill * hipHeight * motion.frameSeconds;
-    const bool still = !before.positions.empty() && (frame.positions[*low] - before.positions[*low]).norm() < stillWay;
+    const double stillDistance = kStill * hipHeight * motion.frameSeconds;
+    const bool still =
+        !before.positions.empty() && (frame.positions[*low] - before.positions[*low]).norm() < stillDistance;
     if (still) heights.standing.push_back(heights.all.back());
     std::swap(frame, before);
   }
   return heights;
 }
 
-double quantile(std::vector<double>& values, double share) {
-  const auto rank = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));
+double quantile(std::vector<double>& values, double fraction) {
+  const auto rank = values.begin() + static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size()));
   std::nth_element(values.begin(), rank, values.end());
   return *rank;
 }
 
 // A rest pose that hangs about the origin instead of standing on it tells nothing about the ground.
-bool standsAt(double ground, double hipHeight) {
+bool isOnGround(double ground, double hipHeight) {
   return ground > -0.25 * hipHeight && ground < kFlies * hipHeight;
 }
 
@@ -76,10 +77,10 @@ bool standsAt(double ground, double hipHeight) {
 double measuredGround(LowestHeights heights, double restGround, double hipHeight) {
   if (std::abs(quantile(heights.all, kBelowGround) - restGround) < kSameGround * hipHeight) return restGround;
   const bool afloat = static_cast<double>(heights.soleDown) < kFewStand * static_cast<double>(heights.all.size());
-  if (afloat && standsAt(restGround, hipHeight)) return restGround;
-  const bool stands =
+  if (afloat && isOnGround(restGround, hipHeight)) return restGround;
+  const bool isStanding =
       static_cast<double>(heights.standing.size()) > kFewStand * static_cast<double>(heights.all.size());
-  return stands ? quantile(heights.standing, 0.25) : quantile(heights.all, kBelowGround);
+  return isStanding ? quantile(heights.standing, 0.25) : quantile(heights.all, kBelowGround);
 }
 
 double legLength(const SkeletonMap& map, MapSide side, const NeutralPose& pose) {
@@ -183,7 +184,7 @@ RetargetSetup::RetargetSetup(const Skeleton& from, const Skeleton& to, SkeletonM
   } else {
     const BodySize one = bodySize(map, MapSide::kSource, sourceNeutral),
                    other = bodySize(map, MapSide::kTarget, targetNeutral);
-    const bool stand = quadruped || (one.stands() && other.stands());
+    const bool stand = quadruped || (one.isStanding() && other.isStanding());
     sourceHipHeight = stand ? one.height : one.across;
     targetHipHeight = stand ? other.height : other.across;
     animalLegs = limber::animalLegs(map, from, to, sourceNeutral, targetNeutral);
@@ -198,7 +199,7 @@ RetargetSetup::RetargetSetup(const Skeleton& from, const Skeleton& to, SkeletonM
   const double sourceLegs = legLength(map, MapSide::kSource, sourceNeutral);
   const double targetLegs = legLength(map, MapSide::kTarget, targetNeutral);
   if (sourceLegs > 0 && targetLegs > 0) {
-    if (options.rootScale == RootScale::kHipHeight) legShare = targetLegs / sourceLegs / scale;
+    if (options.rootScale == RootScale::kHipHeight) legFraction = targetLegs / sourceLegs / scale;
     if (options.rootScale == RootScale::kLegLength) scale = targetLegs / sourceLegs;
   }
   if (options.rootScale == RootScale::kNone) scale = 1;
@@ -218,10 +219,10 @@ RetargetSetup::RetargetSetup(const Skeleton& from, const Skeleton& to, SkeletonM
   // What rests in the air flies: its feet have no ground to keep to.
   if ((targetGround >= kFlies * targetHipHeight && !quadruped) || map.unlikeBodies) animalLegs.clear();
   if (!animalLegs.empty()) targetTail = tailOf(targetReading.anatomy());
-  if (!standsAt(targetGround, targetHipHeight)) {
+  if (!isOnGround(targetGround, targetHipHeight)) {
     if (!person)
       targetGround += scale * (sourceGround - restGround);
-    else if (!options.characterStands)
+    else if (!options.characterOnGround)
       targetGround = sourceGround * scale;
   }
   sameBody = isSameBody();
@@ -248,8 +249,8 @@ bool RetargetSetup::isTwin(const Twins& twins) const {
   for (Index t = 0; t < to.size(); ++t) {
     const std::optional<Index>& parent = target->joints[t].parent;
     roots[t] = parent ? roots[*parent] : t;
-    const Vec3 way = twins.scale * (twins.turn * (from[twins.sourceOf[t]] - from[twins.sourceOf[roots[t]]]));
-    if ((way - (to[t] - to[roots[t]])).norm() > kOff * targetHipHeight) return false;
+    const Vec3 displacement = twins.scale * (twins.turn * (from[twins.sourceOf[t]] - from[twins.sourceOf[roots[t]]]));
+    if ((displacement - (to[t] - to[roots[t]])).norm() > kOff * targetHipHeight) return false;
   }
   return true;
 }
@@ -272,13 +273,13 @@ bool RetargetSetup::isSameBody() const {
   return followed == to.size();
 }
 
-Vec3 RetargetSetup::placeOf(const Vec3& pelvis) const {
-  Vec3 place = scale * pelvis;
+Vec3 RetargetSetup::positionOf(const Vec3& pelvis) const {
+  Vec3 position = scale * pelvis;
   // By the legs about where they carry it; wholly down on the ground.
   const double height = (pelvis.y() - sourceGround) / sourceHipHeight, below = std::clamp(height, 0.0, 1.0);
-  const double byLegs = (legShare - 1) * (height > 1 ? height - 1 : below * (below - 1));
-  place.y() = targetGround + scale * sourceHipHeight * (height + byLegs);
-  return place;
+  const double byLegs = (legFraction - 1) * (height > 1 ? height - 1 : below * (below - 1));
+  position.y() = targetGround + scale * sourceHipHeight * (height + byLegs);
+  return position;
 }
 
 }  // namespace limber

@@ -47,7 +47,7 @@ struct RetargetOptions {
   std::optional<double> sourceGround;
   // The character's rest pose stands on its ground, wherever that is, as models with a surface do. Else a person who
   // hangs about the origin, as bare skeletons may, is put where the motion's ground is.
-  bool characterStands = false;
+  bool characterOnGround = false;
   std::shared_ptr<const BodySkin> skin = nullptr;  // the character's: arms stay outside it (ArmClearance)
 };
 
@@ -59,7 +59,7 @@ struct RetargetSetup {
                 const PoseSequence* motion = nullptr);
 
   // Where the target's pelvis stands when the source's stands at `pelvis`, both in their person's space.
-  Vec3 placeOf(const Vec3& pelvis) const;
+  Vec3 positionOf(const Vec3& pelvis) const;
 
   const Skeleton* source;
   const Skeleton* target;
@@ -79,7 +79,7 @@ struct RetargetSetup {
   // Target metres for a source metre of the root's way. Of others than people with legs: by where these begin.
   double scale = 1;
   // The legs' share of the hips' height, over the source's: where ankles are high, bent legs lower the hips less.
-  double legShare = 1;
+  double legFraction = 1;
   double sourceHipHeight = 1,
          targetHipHeight = 1;                 // of no people: mean height of the joints, or size of what lies flat
   double sourceGround = 0, targetGround = 0;  // heights of the lowest foot joint of someone standing

@@ -42,13 +42,13 @@ TEST(RetargetSetup, ACharacterWithASurfaceStandsOnItsOwnGround) {
   low.joints[0].rest.translation.y() = 0;
   const SkeletonMap map = matchSkeletons(person, low);
   RetargetOptions standing;
-  standing.characterStands = true;
+  standing.characterOnGround = true;
   const double down = person.joints[0].rest.translation.y();
   const RetargetSetup bare(person, low, map, {}), surfaced(person, low, map, standing);
   EXPECT_NEAR(bare.targetGround, bare.sourceGround, 1e-9);
   EXPECT_NEAR(surfaced.targetGround, surfaced.sourceGround - down, 1e-9);
   const Vec3 hips(0, down, 0);
-  EXPECT_NEAR(surfaced.placeOf(hips).y(), 0, 1e-9) << "one who stands is where it rests";
+  EXPECT_NEAR(surfaced.positionOf(hips).y(), 0, 1e-9) << "one who stands is where it rests";
 }
 
 // Someone who drifts on the belly, half a metre up, moves the feet slowly; they do not stand there.
@@ -69,19 +69,19 @@ TEST(RetargetSetup, TheSameBodyIsToldByItsBones) {
 // elsewhere.
 TEST(RetargetSetup, TheSameBodyIsToldByTurnsAlone) {
   Skeleton person = practiceHumanoid();
-  const std::vector<Vec3> places = restPositions(person);
+  const std::vector<Vec3> positions = restPositions(person);
   std::vector<Index> legs, feet;
   for (const char* side : {"left", "right"}) {
     legs.push_back(person.find(std::string(side) + "UpperLeg").value());
     feet.push_back(person.find(std::string(side) + "Foot").value());
     Joint& foot = person.joints[feet.back()];
     foot.parent.reset();
-    foot.rest.translation = places[feet.back()];
+    foot.rest.translation = positions[feet.back()];
   }
   PoseSequence motion{{restPose(person)}, 1.0 / 30};
   for (const Index foot : feet) motion.poses[0].locals[foot].translation.y() += 0.1;
   for (const Index leg : legs) person.joints[leg].rest.rotation = testing::turn(Vec3::UnitX(), 180);
-  for (const Index foot : feet) person.joints[foot].rest.translation.y() = 2 * places[0].y() - places[foot].y();
+  for (const Index foot : feet) person.joints[foot].rest.translation.y() = 2 * positions[0].y() - positions[foot].y();
   const RetargetSetup setup(person, person, matchSkeletons(person, person), {}, &motion);
   EXPECT_TRUE(setup.sameBody);
   EXPECT_NEAR(setup.scale, 1, 1e-9);
@@ -92,13 +92,13 @@ TEST(RetargetSetup, TheSameBodyIsAsHighOverItsGround) {
   const Skeleton person = practiceHumanoid();
   PoseSequence motion{std::vector(30, restPose(person)), 1.0 / 30};
   for (Pose& pose : motion.poses) pose.locals[0].translation.y() += 0.12;
-  RetargetOptions stands;
-  stands.characterStands = true;
-  const RetargetSetup setup(person, person, matchSkeletons(person, person), stands, &motion);
+  RetargetOptions onGround;
+  onGround.characterOnGround = true;
+  const RetargetSetup setup(person, person, matchSkeletons(person, person), onGround, &motion);
   EXPECT_GT(setup.sourceGround, 0.1);
   EXPECT_DOUBLE_EQ(setup.targetGround, setup.sourceGround);
-  stands.sourceGround = setup.sourceGround;
-  const RetargetSetup asked(person, person, matchSkeletons(person, person), stands, &motion);
+  onGround.sourceGround = setup.sourceGround;
+  const RetargetSetup asked(person, person, matchSkeletons(person, person), onGround, &motion);
   EXPECT_LT(asked.targetGround, 0.1) << "who says where the ground is wants it under the feet";
 }
 

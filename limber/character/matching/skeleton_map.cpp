@@ -138,8 +138,8 @@ class Matcher {
     const double confidence = std::min(from_.centerConfidence, to_.centerConfidence);
     const Part *one = from_.anatomy.find(PartKind::kTrunk), *other = to_.anatomy.find(PartKind::kTrunk);
     const MatchedBy by = one && other ? evidenceOf(*one, *other) : MatchedBy::kShape;
-    const bool guess = from_.pelvisIsGuess || to_.pelvisIsGuess;
-    const double trunkConfidence = guess ? std::min(confidence, kOneOfSeveral) : confidence;
+    const bool isInferred = from_.pelvisIsInferred || to_.pelvisIsInferred;
+    const double trunkConfidence = isInferred ? std::min(confidence, kOneOfSeveral) : confidence;
     if (from_.pelvis && to_.pelvis) add(body_part::kPelvis, {*from_.pelvis}, {*to_.pelvis}, trunkConfidence, by);
     add(body_part::kTrunk, from_.trunk, to_.trunk, trunkConfidence, by);
     add(body_part::kNeck, from_.neck, to_.neck, confidence, by);
@@ -237,14 +237,14 @@ class Matcher {
       });
     };
     for (LimbPair& pair : sources) pair.taken = isMatched(from_, pair, matchedSource_);
-    const auto share = [](std::size_t place, std::size_t count) {
-      return count > 1 ? static_cast<double>(place) / static_cast<double>(count - 1) : 0.5;
+    const auto fractionOf = [](std::size_t index, std::size_t count) {
+      return count > 1 ? static_cast<double>(index) / static_cast<double>(count - 1) : 0.5;
     };
     for (std::size_t t = 0; t < targets.size(); ++t) {
       if (isMatched(to_, targets[t], matchedTarget_)) continue;
       const auto cost = [&](const LimbPair& pair) {
         const auto s = static_cast<std::size_t>(&pair - sources.data());
-        return std::abs(share(s, sources.size()) - share(t, targets.size())) + (pair.taken ? 1 : 0);
+        return std::abs(fractionOf(s, sources.size()) - fractionOf(t, targets.size())) + (pair.taken ? 1 : 0);
       };
       const auto best = std::min_element(sources.begin(), sources.end(),
                                          [&](const LimbPair& a, const LimbPair& b) { return cost(a) < cost(b); });
@@ -295,8 +295,8 @@ class Matcher {
       std::vector<Index> from(source.joints.begin() + static_cast<std::ptrdiff_t>(begins.first), source.joints.end()),
           to(target.joints.begin() + static_cast<std::ptrdiff_t>(begins.second), target.joints.end());
       // What goes on after the last landmark of both are tips, or what one of them has no word for.
-      const bool stands = standOnMany() && part.kind == PartKind::kLeg;
-      if (!last || !stands || segment != Segment::kToes) {
+      const bool isStanding = standOnMany() && part.kind == PartKind::kLeg;
+      if (!last || !isStanding || segment != Segment::kToes) {
         from.resize(last ? 1 : common[m + 1].second.first - begins.first);
         to.resize(last ? 1 : common[m + 1].second.second - begins.second);
       }
@@ -304,7 +304,7 @@ class Matcher {
         keepAbove(sourceTree_, source.joints[common[m + 1].second.first], from);
         keepAbove(targetTree_, target.joints[common[m + 1].second.second], to);
       }
-      if (stands && segment == Segment::kUpper && !last) {
+      if (isStanding && segment == Segment::kUpper && !last) {
         const std::size_t sourceEnd = common[m + 1].second.first, targetEnd = common[m + 1].second.second;
         matchBones(piece, {source, begins.first, sourceEnd}, {target, begins.second, targetEnd}, confidence, by);
         continue;
@@ -315,9 +315,9 @@ class Matcher {
       if (segment == Segment::kBase && part.kind == PartKind::kLeg && !alikeBases(from, to, common, source, target))
         continue;
       piece.segment = segment;
-      const bool guess =
+      const bool isInferred =
           segment == Segment::kEnd && (isOneOfSeveral(sourceTree_, *source.part) || isOneOfSeveral(targetTree_, part));
-      add(piece, std::move(from), std::move(to), guess ? std::min(confidence, kOneOfSeveral) : confidence, by);
+      add(piece, std::move(from), std::move(to), isInferred ? std::min(confidence, kOneOfSeveral) : confidence, by);
     }
   }
 
@@ -365,11 +365,11 @@ class Matcher {
     std::size_t begin, end;
     std::span<const Index> joints() const { return std::span(limb.joints).subspan(begin, end - begin); }
     std::vector<double> along() const {
-      std::vector<double> places;
+      std::vector<double> positions;
       const double length = limb.along[end] - limb.along[begin];
       for (std::size_t i = begin; i < end; ++i)
-        places.push_back(length > 0 ? (limb.along[i] - limb.along[begin]) / length : 0);
-      return places;
+        positions.push_back(length > 0 ? (limb.along[i] - limb.along[begin]) / length : 0);
+      return positions;
     }
   };
   void matchBones(BodyPart piece, const Bones& source, const Bones& target, double confidence, MatchedBy by) {
@@ -391,14 +391,15 @@ class Matcher {
     constexpr double kAlikeBases = 0.9;
     if (from_.anatomy.pairsOf(PartKind::kLeg) < 2 || to_.anatomy.pairsOf(PartKind::kLeg) < 2 || common.size() < 2)
       return false;
-    const auto wayOf = [](const Skeleton& skeleton, const Anatomy& anatomy, Index begin, Index end) {
+    const auto directionOf = [](const Skeleton& skeleton, const Anatomy& anatomy, Index begin, Index end) {
       const std::vector<Vec3> rest = restPositions(skeleton);
-      const Vec3 way = (rest[end] - rest[begin]).normalized();
-      return Vec3(anatomy.axes.left().dot(way), anatomy.axes.up.dot(way), anatomy.axes.front.dot(way));
+      const Vec3 displacement = (rest[end] - rest[begin]).normalized();
+      return Vec3(anatomy.axes.left().dot(displacement), anatomy.axes.up.dot(displacement),
+                  anatomy.axes.front.dot(displacement));
     };
     const auto& next = common[1].second;
-    return wayOf(source_, from_.anatomy, from.front(), source.joints[next.first])
-               .dot(wayOf(target_, to_.anatomy, to.front(), target.joints[next.second])) > kAlikeBases;
+    return directionOf(source_, from_.anatomy, from.front(), source.joints[next.first])
+               .dot(directionOf(target_, to_.anatomy, to.front(), target.joints[next.second])) > kAlikeBases;
   }
 
   static std::vector<std::pair<Segment, std::pair<std::size_t, std::size_t>>> commonMarks(const LimbPieces& source,
@@ -493,7 +494,7 @@ class Matcher {
 
   // Most joints of the smaller one have the same name, and hang on joints of the same name.
   bool areFamily() const {
-    constexpr double kMostNames = 0.6;  // fraction of the smaller one's joints; 0.5 to 0.9; set by hand
+    constexpr double kMaxNames = 0.6;  // fraction of the smaller one's joints; 0.5 to 0.9; set by hand
     const auto keyOf = [](const Skeleton& skeleton, Index joint) {
       const std::optional<Index>& parent = skeleton.joints[joint].parent;
       return plainName(skeleton.joints[joint].name) + '/' + (parent ? plainName(skeleton.joints[*parent].name) : "");
@@ -503,7 +504,7 @@ class Matcher {
     std::size_t common = 0;
     for (Index j = 0; j < target_.jointCount(); ++j) common += names.count(keyOf(target_, j));
     return static_cast<double>(common) >
-           kMostNames * static_cast<double>(std::min(source_.jointCount(), target_.jointCount()));
+           kMaxNames * static_cast<double>(std::min(source_.jointCount(), target_.jointCount()));
   }
 
   // Chains of as many joints in both, joint by joint: each may move by itself.
@@ -523,10 +524,10 @@ class Matcher {
       }
     }
     const std::span<const Index> order = targetTree_.order();
-    std::vector<std::size_t> place(order.size());
-    for (std::size_t i = 0; i < order.size(); ++i) place[order[i]] = i;
+    std::vector<std::size_t> index(order.size());
+    for (std::size_t i = 0; i < order.size(); ++i) index[order[i]] = i;
     std::stable_sort(split.begin(), split.end(), [&](const JointMatch& a, const JointMatch& b) {
-      return place[a.target.front()] < place[b.target.front()];
+      return index[a.target.front()] < index[b.target.front()];
     });
     map_.matches = std::move(split);
   }

@@ -8,7 +8,7 @@ namespace {
 
 // Matches; 16 and more; that are kept at once: bounds memory. The oldest go, so that a thousand bodies of as many
 // builds need no more memory. A key and a map of 100 joints take some 40 KB.
-constexpr std::size_t kMostKept = 256;
+constexpr std::size_t kMaxKept = 256;
 
 template <typename Number>
 void addBytes(std::string& key, const Number& number) {
@@ -44,7 +44,7 @@ std::shared_ptr<SkeletonMatches::Entry> SkeletonMatches::entryOf(std::string key
   entry = std::make_shared<Entry>();
   std::shared_ptr<Entry> made = entry;
   byAge_.push_back(std::move(key));
-  if (byAge_.size() > kMostKept) {
+  if (byAge_.size() > kMaxKept) {
     entries_.erase(byAge_.front());
     byAge_.pop_front();
   }

@@ -18,7 +18,7 @@ namespace {
 // hand.
 constexpr double kSameLength = 0.02;
 // Mean distance of joints laid on each other, in mean distances from their middle; 0.1 to 0.5; of twins; set by hand.
-constexpr double kMostOff = 0.35;
+constexpr double kMaxDeviation = 0.35;
 // The same, and of a bone; 1e-5 to 1e-2; candidates that differ by less are told apart by names; set by hand.
 constexpr double kAlike = 1e-3;
 // Fraction of a limb's reach; 1e-6 to 1e-4 (1e-3 before); by which its joints may be off to have been turned as a
@@ -65,7 +65,7 @@ class TwinMatcher {
     short_ = 0.01 * other / static_cast<double>(target_.jointCount());
 
     std::optional<Twins> best;
-    double least = kMostOff, names = -1;
+    double least = kMaxDeviation, names = -1;
     std::size_t most = 0;  // bones that are alike to the bit, but for limbs that rest otherwise
     for (const Quat& turn : turns()) {
       Twins twins{std::vector<Index>(target_.jointCount(), 0), turn, scale_};
@@ -79,7 +79,7 @@ class TwinMatcher {
       const std::size_t alike = bonesAlike(twins, twins.turn);
       const bool better =
           alike > most || (alike == most && (off < least - kAlike || (off < least + kAlike && common > names)));
-      if (!better || off > kMostOff) continue;
+      if (!better || off > kMaxDeviation) continue;
       most = alike;
       least = std::min(off, least);
       names = common;
@@ -110,10 +110,10 @@ class TwinMatcher {
     return one == other;
   }
 
-  static double lengthOf(const JointTree& tree, const std::vector<Vec3>& places) {
+  static double lengthOf(const JointTree& tree, const std::vector<Vec3>& positions) {
     double length = 0;
     for (Index j = 0; j < tree.size(); ++j) {
-      if (tree.parent(j)) length += (places[j] - places[*tree.parent(j)]).norm();
+      if (tree.parent(j)) length += (positions[j] - positions[*tree.parent(j)]).norm();
     }
     return length;
   }
@@ -137,11 +137,11 @@ class TwinMatcher {
   }
 
   // Across the plane of symmetry; in it, from the first root to the middle of all joints; square to both.
-  static Mat3 frameOf(const JointTree& tree, const std::vector<Vec3>& places) {
-    const Vec3 lateral = foldBody(tree, places).lateral;
+  static Mat3 frameOf(const JointTree& tree, const std::vector<Vec3>& positions) {
+    const Vec3 lateral = foldBody(tree, positions).lateral;
     Vec3 middle = Vec3::Zero();
-    for (const Vec3& place : places) middle += place / static_cast<double>(places.size());
-    Vec3 along = middle - places[tree.roots().front()];
+    for (const Vec3& position : positions) middle += position / static_cast<double>(positions.size());
+    Vec3 along = middle - positions[tree.roots().front()];
     along -= along.dot(lateral) * lateral;
     if (!(along.norm() > 1e-9)) return Mat3::Zero();
     along.normalize();
@@ -208,14 +208,14 @@ class TwinMatcher {
   }
 
   // Of what hangs there, from its parent.
-  static Vec3 limbMiddle(const JointTree& tree, const std::vector<Vec3>& places, Index joint,
+  static Vec3 limbMiddle(const JointTree& tree, const std::vector<Vec3>& positions, Index joint,
                          std::optional<Index> parent) {
     const std::span<const Index> joints = tree.subtree(joint);
     const std::size_t step = joints.size() / 16 + 1;
     Vec3 sum = Vec3::Zero();
     double count = 0;
-    for (std::size_t i = 0; i < joints.size(); i += step, ++count) sum += places[joints[i]];
-    return sum / count - (parent ? places[*parent] : Vec3(Vec3::Zero()));
+    for (std::size_t i = 0; i < joints.size(); i += step, ++count) sum += positions[joints[i]];
+    return sum / count - (parent ? positions[*parent] : Vec3(Vec3::Zero()));
   }
 
   // Of joints, about their middles, in mean distances from it.
@@ -338,7 +338,7 @@ Pose poseAsTwin(const Skeleton& source, const Pose& sourcePose, const Skeleton& 
     // From how its parent turns on, so that what no place tells stays as it is.
     const auto turnedOn = [&] {
       std::vector<Vec3> carried;
-      for (const Vec3& place : is) carried.push_back(turns[joint] * place);
+      for (const Vec3& position : is) carried.push_back(turns[joint] * position);
       return (rotationBetween(carried, wanted) * turns[joint]).normalized();
     };
     const Quat whole = turnedOn();

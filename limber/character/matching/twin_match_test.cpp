@@ -166,8 +166,8 @@ TEST(TwinMatch, LimbsThatRestOtherwiseAreTurnedBackExactly) {
 TEST(TwinMatch, FingersOfALimbThatRestsOtherwiseKeepTheirPlaces) {
   Skeleton source = original();
   const Index hand = source.find("mixamorig:LeftHand").value();
-  const std::vector<Vec3> places = restPositions(source);
-  const Vec3 along = (places[hand] - places[*source.joints[hand].parent]).normalized();
+  const std::vector<Vec3> positions = restPositions(source);
+  const Vec3 along = (positions[hand] - positions[*source.joints[hand].parent]).normalized();
   const Vec3 across = along.cross(Vec3::UnitZ()).normalized();
   const Quat toHand = Quat(restGlobals(source)[hand].rotation()).conjugate();
   for (int i = 0; i < 4; ++i) {

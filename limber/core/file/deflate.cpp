@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kWindow = 32768, kShortest = 4, kLongest = 258;
 constexpr std::size_t kBlockTokens = 32768;
-constexpr int kMostTries = 16;  // places looked at for one match
+constexpr int kMaxTries = 16;  // places looked at for one match
 constexpr std::size_t kLiterals = 286, kDistances = 30, kCodeLengths = 19, kEndOfBlock = 256;
 constexpr std::uint32_t kNowhere = 0xffffffff;
 
@@ -156,7 +156,7 @@ class Deflater {
   std::size_t addToken(std::size_t at) {
     std::size_t length = 1, distance = 0;
     std::uint32_t from = remember(at);
-    for (int tries = 0; tries < kMostTries && from != kNowhere && at - from < kWindow; ++tries) {
+    for (int tries = 0; tries < kMaxTries && from != kNowhere && at - from < kWindow; ++tries) {
       const std::size_t found = matchLength(from, at);
       if (found >= kShortest && found > length) {
         length = found;

@@ -56,10 +56,10 @@ void closeStream(File stream, const fs::path& path) {
 
 // What a link points to, also where nothing is there yet: the link stays, the file behind it is replaced.
 fs::path behindLinks(fs::path path) {
-  constexpr int kMostLinks = 40;
+  constexpr int kMaxLinks = 40;
   std::error_code problem;
   for (int links = 0; fs::is_symlink(fs::symlink_status(path, problem)); ++links) {
-    if (links == kMostLinks) failToWrite(path, ELOOP);
+    if (links == kMaxLinks) failToWrite(path, ELOOP);
     path = path.parent_path() / fs::read_symlink(path, problem);
     if (problem) failToWrite(path, problem.value());
   }
@@ -85,9 +85,9 @@ void writeStraight(const OutputFile& file) {
 // A file under a temporary name beside its place; gone with this object unless published.
 class PendingFile {
  public:
-  explicit PendingFile(fs::path place) : place_(std::move(place)) {}
+  explicit PendingFile(fs::path location) : path_(std::move(location)) {}
   PendingFile(PendingFile&& other) noexcept
-      : place_(std::move(other.place_)), temporary_(std::move(other.temporary_)), made_(other.made_) {
+      : path_(std::move(other.path_)), temporary_(std::move(other.temporary_)), made_(other.made_) {
     other.made_ = false;
   }
   PendingFile& operator=(PendingFile&&) = delete;
@@ -98,33 +98,33 @@ class PendingFile {
 
   void write(const OutputFile& file) {
     File stream = openBeside();
-    writeStream(stream.get(), file, place_);
-    closeStream(std::move(stream), place_);
+    writeStream(stream.get(), file, path_);
+    closeStream(std::move(stream), path_);
   }
 
   void publish() {
     std::error_code problem;
-    fs::rename(temporary_, place_, problem);
-    if (problem) failToWrite(place_, problem.value());
+    fs::rename(temporary_, path_, problem);
+    if (problem) failToWrite(path_, problem.value());
     made_ = false;
   }
 
  private:
   // Under the first name that nobody has: another run may be writing to the same place.
   File openBeside() {
-    constexpr int kMostNames = 1000;
-    for (int i = 0; i < kMostNames; ++i) {
-      temporary_ = place_;
+    constexpr int kMaxNames = 1000;
+    for (int i = 0; i < kMaxNames; ++i) {
+      temporary_ = path_;
       temporary_ += ".limber-part" + (i == 0 ? std::string() : std::to_string(i));
       File stream(std::fopen(temporary_.string().c_str(), "wbx"));
       made_ = stream != nullptr;
       if (made_) return stream;
       if (errno != EEXIST) break;
     }
-    failToWrite(place_, errno);
+    failToWrite(path_, errno);
   }
 
-  fs::path place_, temporary_;
+  fs::path path_, temporary_;
   bool made_ = false;
 };
 

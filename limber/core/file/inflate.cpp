@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kLongestCode = 15;  // bits
 constexpr int kTableBits = 10;    // codes up to here are looked up, longer ones walked
-constexpr int kMostSymbols = 288;
+constexpr int kMaxSymbols = 288;
 
 [[noreturn]] void failDeflated(const char* what) {
   throw Error(ErrorCode::kBadData, what);
@@ -126,7 +126,7 @@ class HuffmanCode {
   }
 
   std::array<int, kLongestCode + 1> counts_ = {};
-  std::array<std::uint16_t, kMostSymbols> symbols_ = {};
+  std::array<std::uint16_t, kMaxSymbols> symbols_ = {};
   std::array<std::uint16_t, 1 << kTableBits> table_ = {};  // symbol and length; 0: a longer code, or none
 };
 
@@ -135,7 +135,7 @@ struct BlockCodes {
 };
 
 BlockCodes fixedCodes() {
-  std::array<std::uint8_t, kMostSymbols> lengths = {};
+  std::array<std::uint8_t, kMaxSymbols> lengths = {};
   std::fill(lengths.begin(), lengths.begin() + 144, std::uint8_t{8});
   std::fill(lengths.begin() + 144, lengths.begin() + 256, std::uint8_t{9});
   std::fill(lengths.begin() + 256, lengths.begin() + 280, std::uint8_t{7});

@@ -9,7 +9,7 @@
 namespace limber {
 
 // The most bytes that one byte of deflated data can become: a match of 258 bytes takes two bits.
-inline constexpr std::size_t kMostInflatedPerByte = 1032;
+inline constexpr std::size_t kMaxInflatedPerByte = 1032;
 
 // Fills `out` with what the data hold. Throws Error kBadData where they are broken or cut off, or hold more or fewer
 // bytes than `out`; what stands behind them is not looked at. Allocates nothing. Cost: linear, some 150 megabytes of

@@ -19,7 +19,7 @@ constexpr int kExactPower = 22;  // 10^22 is the largest power of ten that a dou
 constexpr std::array<double, kExactPower + 1> kPowers = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
                                                          1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
                                                          1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
-constexpr int kMostDigits = 19;        // that 64 bits hold
+constexpr int kMaxDigits = 19;         // that 64 bits hold
 constexpr int kLargestExponent = 400;  // beyond it everything is 0 or infinite, whatever the digits
 
 bool isDigit(const char* at, const char* end) {
@@ -34,7 +34,7 @@ struct Decimal {
 
   void add(char c, bool afterPoint) {
     any = true;
-    if (count < kMostDigits) {
+    if (count < kMaxDigits) {
       digits = 10 * digits + static_cast<std::uint64_t>(c - '0');
       if (digits != 0) ++count;
       if (afterPoint) --exponent;

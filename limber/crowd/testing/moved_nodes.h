@@ -26,9 +26,9 @@ inline std::vector<Vec3> nodesAt(const Asset& asset, std::span<const Index> node
     }
   }
   const SceneGraph graph = readSceneGraph(document);
-  std::vector<Vec3> places;
-  for (const Index node : nodes) places.push_back(graph.world[node].translation());
-  return places;
+  std::vector<Vec3> positions;
+  for (const Index node : nodes) positions.push_back(graph.world[node].translation());
+  return positions;
 }
 
 }  // namespace limber::testing

@@ -50,7 +50,7 @@ inline BoundMesh bentTube(int around, int rings, double soft, const Quat& turn) 
 }
 
 // Any mesh bound to four joints at random, which move apart from one another.
-inline BoundMesh boundAtRandom(TriMesh mesh, double mostAngle = 1.5) {
+inline BoundMesh boundAtRandom(TriMesh mesh, double maxAngle = 1.5) {
   Random random(11);
   const auto number = [&] { return random.uniform(-1, 1); };
   const auto vector = [&] {
@@ -71,7 +71,7 @@ inline BoundMesh boundAtRandom(TriMesh mesh, double mostAngle = 1.5) {
     }
   }
   for (int j = 0; j < 4; ++j) {
-    const double angle = mostAngle * number();
+    const double angle = maxAngle * number();
     const Vec3 axis = vector(), offset = 0.2 * vector();
     result.transforms.push_back(Affine(Eigen::Translation3d(offset) * Eigen::AngleAxisd(angle, axis.normalized())));
   }

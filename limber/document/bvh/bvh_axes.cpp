@@ -67,7 +67,7 @@ bool restsAlong(UpAxis up, std::span<const BvhJoint> joints, const BvhEnds& ends
   return upwards.y() > kUprightSlope * std::hypot(upwards.x(), upwards.z());
 }
 
-bool standsAlongZ(std::span<const BvhJoint> joints) {
+bool isUprightAlongZ(std::span<const BvhJoint> joints) {
   return restsAlong(UpAxis::kZ, joints, namedEnds(joints));
 }
 

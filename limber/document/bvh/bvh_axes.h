@@ -16,7 +16,7 @@ namespace limber {
 bool restsAlong(UpAxis up, std::span<const BvhJoint> joints, const BvhEnds& ends);
 
 // Heads lie above feet along Z, by the joints' names.
-bool standsAlongZ(std::span<const BvhJoint> joints);
+bool isUprightAlongZ(std::span<const BvhJoint> joints);
 
 // Heads lie before the feet (+Z) more than above them in the rest pose, and upright along neither axis, as those of
 // beasts do: that they do in frames, too, says nothing of what is up.

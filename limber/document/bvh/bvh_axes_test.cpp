@@ -218,9 +218,9 @@ TEST(BvhAxes, FramesWithZUpAreTurnedWhereTheRestPoseHasYUp) {
       EXPECT_THAT(kindsOf(motion), ElementsAre("converted-axes"));
       EXPECT_LT(farthest(motion, right), 1e-4) << heading;
       EXPECT_EQ(restDifference(motion, right), 0) << "the rest pose stands already";
-      const Motion told = readText(bvh(turnedAll(kYToZ, upright), plain), UpAxis::kZ);
-      EXPECT_LT(farthest(told, right), 1e-4);
-      EXPECT_EQ(restDifference(told, right), 0);
+      const Motion declared = readText(bvh(turnedAll(kYToZ, upright), plain), UpAxis::kZ);
+      EXPECT_LT(farthest(declared, right), 1e-4);
+      EXPECT_EQ(restDifference(declared, right), 0);
     }
   }
 }
@@ -276,10 +276,10 @@ TEST(BvhAxes, FramesUpsideDownAreReported) {
   const Motion motion = readText(text);
   EXPECT_THAT(kindsOf(motion), ElementsAre("upside-down"));
   EXPECT_THAT(motion.warnings.items()[0].message, ::testing::HasSubstr("--up=-y"));
-  const Motion told = readText(text, UpAxis::kMinusY);
-  EXPECT_THAT(kindsOf(told), ElementsAre("converted-axes"));
-  EXPECT_LT(farthest(told, right), 1e-4);
-  EXPECT_EQ(restDifference(told, right), 0);
+  const Motion declared = readText(text, UpAxis::kMinusY);
+  EXPECT_THAT(kindsOf(declared), ElementsAre("converted-axes"));
+  EXPECT_LT(farthest(declared, right), 1e-4);
+  EXPECT_EQ(restDifference(declared, right), 0);
   const Motion fromZ = readText(bvh(turnedAll(about(Vec3::UnitX(), -90), walk())), UpAxis::kMinusZ);
   EXPECT_LT(farthest(fromZ, right), 1e-4);
 }
@@ -287,8 +287,8 @@ TEST(BvhAxes, FramesUpsideDownAreReported) {
 TEST(BvhAxes, AHandstandForPartOfTheClipIsNoReason) {
   std::vector<TextFrame> frames = walk(0, 40);
   for (TextFrame& frame : frames) frame = turned(about(Vec3::UnitZ(), 180), frame);
-  const std::vector<TextFrame> stands = walk(0, 10);
-  frames.insert(frames.end(), stands.begin(), stands.end());
+  const std::vector<TextFrame> standing = walk(0, 10);
+  frames.insert(frames.end(), standing.begin(), standing.end());
   EXPECT_THAT(kindsOf(readText(bvh(frames))), IsEmpty());
 }
 
@@ -307,11 +307,11 @@ std::vector<BvhJoint> fewJoints(const Vec3& head, const Vec3& left, const Vec3& 
 
 // As programs write it that zero their joints' axes: the legs are longer than the trunk, to the same side of the hips.
 TEST(BvhAxes, ARestPoseAlongOneAxisTellsNothing) {
-  EXPECT_TRUE(standsAlongZ(fewJoints({0, 0.02, 0.6}, {0.1, 0, -0.8}, {-0.1, 0, -0.8})));
-  EXPECT_FALSE(standsAlongZ(fewJoints({0, 0.6, 0.02}, {0.1, -0.8, 0}, {-0.1, -0.8, 0})));
-  EXPECT_FALSE(standsAlongZ(fewJoints({0, 0, -0.6}, {0.1, 0, -0.8}, {-0.1, 0, -0.8})));
-  EXPECT_FALSE(standsAlongZ(fewJoints({0, 0, 0.9}, {0.1, 0, 0.8}, {-0.1, 0, 0.8})));
-  EXPECT_FALSE(standsAlongZ(fewJoints({0.6, 0, 0.1}, {0.8, 0, -0.1}, {0.8, 0, -0.1})));
+  EXPECT_TRUE(isUprightAlongZ(fewJoints({0, 0.02, 0.6}, {0.1, 0, -0.8}, {-0.1, 0, -0.8})));
+  EXPECT_FALSE(isUprightAlongZ(fewJoints({0, 0.6, 0.02}, {0.1, -0.8, 0}, {-0.1, -0.8, 0})));
+  EXPECT_FALSE(isUprightAlongZ(fewJoints({0, 0, -0.6}, {0.1, 0, -0.8}, {-0.1, 0, -0.8})));
+  EXPECT_FALSE(isUprightAlongZ(fewJoints({0, 0, 0.9}, {0.1, 0, 0.8}, {-0.1, 0, 0.8})));
+  EXPECT_FALSE(isUprightAlongZ(fewJoints({0.6, 0, 0.1}, {0.8, 0, -0.1}, {0.8, 0, -0.1})));
 }
 
 // Those of a beast lie before its feet in all frames, too: nothing is to be turned.

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "limber/core/text/numbers.h"
-#include "limber/skeleton/clip/held_clip.h"
+#include "limber/skeleton/clip/keep_duration.h"
 
 namespace limber {
 

@@ -14,7 +14,7 @@ namespace limber {
 namespace {
 
 constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
-constexpr double kMostChannels = 1024;  // of one joint; files have 3 or 6, some 9
+constexpr double kMaxChannels = 1024;  // of one joint; files have 3 or 6, some 9
 
 std::optional<BvhChannel> channelNamed(std::string_view word) {
   constexpr std::array<std::string_view, 3> kQuantities = {"position", "rotation", "scale"};
@@ -120,7 +120,7 @@ void BvhHierarchy::takeChannels(BvhLine& line) {
   if (channelsSeen_) throw line.error(fmt::format("'{}' has CHANNELS a second time", BvhLine::shown(joint.name)));
   channelsSeen_ = true;
   const double count = line.number();
-  if (!(count >= 0 && count <= kMostChannels) || count != std::floor(count)) {
+  if (!(count >= 0 && count <= kMaxChannels) || count != std::floor(count)) {
     throw line.error(fmt::format("{} is no number of channels", count));
   }
   for (int i = 0; i < static_cast<int>(count); ++i) {

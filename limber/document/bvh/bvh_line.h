@@ -70,11 +70,11 @@ class BvhLine {
 
   // A word as it may stand in a message: short, printable.
   static std::string shown(std::string_view word) {
-    constexpr std::size_t kMost = 40;
-    std::string text(word.substr(0, kMost));
+    constexpr std::size_t kMax = 40;
+    std::string text(word.substr(0, kMax));
     std::replace_if(
         text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c > 0x7e; }, '?');
-    return word.size() > kMost ? text + "..." : text;
+    return word.size() > kMax ? text + "..." : text;
   }
 
  private:

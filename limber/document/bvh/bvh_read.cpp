@@ -15,7 +15,7 @@ namespace limber {
 
 namespace {
 
-constexpr Index kMostFrames = Index{1} << 22;  // their times still differ in single precision
+constexpr Index kMaxFrames = Index{1} << 22;  // their times still differ in single precision
 constexpr double kUsualRate = 30;
 constexpr double kShortestFrame = 1e-6, kLongestFrame = 1e6;  // seconds
 constexpr const char* kCutFile = "the file is cut or damaged: export it again";
@@ -224,8 +224,8 @@ class BvhReader {
       return;
     }
     repair(line.lineNumber());
-    if (frames_->count() == kMostFrames) {
-      throw Error(ErrorCode::kLimit, fmt::format("has more than {} frames", kMostFrames), where(line.lineNumber()));
+    if (frames_->count() == kMaxFrames) {
+      throw Error(ErrorCode::kLimit, fmt::format("has more than {} frames", kMaxFrames), where(line.lineNumber()));
     }
     frames_->addFrame(values_);
   }
@@ -298,7 +298,7 @@ class BvhReader {
     if (options_.up) {
       expected = up = *options_.up;
     } else {
-      if (standsAlongZ(joints)) expected = UpAxis::kZ;
+      if (isUprightAlongZ(joints)) expected = UpAxis::kZ;
       const FramesUp frames = headsLieAhead(joints, ends) ? FramesUp{expected, false} : upOfFrames(postures, expected);
       up = frames.axis;
       if (frames.ambiguous) warnOfAmbiguity(expected);

@@ -12,7 +12,7 @@ namespace limber {
 namespace {
 
 constexpr std::size_t kLongestLine = 65536;  // bytes
-constexpr std::size_t kMostStreamedJoints = 1000;
+constexpr std::size_t kMaxStreamedJoints = 1000;
 
 }  // namespace
 
@@ -38,13 +38,13 @@ void BvhStream::take(std::string_view text) {
 void BvhStream::takeLine(std::string_view text) {
   if (frames_) return takeRow(text);
   if (!hierarchy_.takeLine(text, lines_)) return begin();
-  if (hierarchy_.joints().size() > kMostStreamedJoints) {
-    throw Error(ErrorCode::kLimit, fmt::format("has more than {} joints", kMostStreamedJoints));
+  if (hierarchy_.joints().size() > kMaxStreamedJoints) {
+    throw Error(ErrorCode::kLimit, fmt::format("has more than {} joints", kMaxStreamedJoints));
   }
 }
 
 void BvhStream::begin() {
-  turn_ = standsAlongZ(hierarchy_.joints()) ? Quat(std::sqrt(0.5), -std::sqrt(0.5), 0, 0) : Quat::Identity();
+  turn_ = isUprightAlongZ(hierarchy_.joints()) ? Quat(std::sqrt(0.5), -std::sqrt(0.5), 0, 0) : Quat::Identity();
   for (const BvhJoint& joint : hierarchy_.joints()) {
     Joint made;
     made.name = joint.name;

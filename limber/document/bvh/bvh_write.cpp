@@ -20,9 +20,9 @@ namespace limber {
 
 namespace {
 
-constexpr double kDenseRate = 60, kMostRate = 240;                  // frames a second
-constexpr double kTimeRounding = 2e-6;                              // of a time in single precision
-constexpr std::uint64_t kMostJointFrames = std::uint64_t{1} << 24;  // joints x frames of a file: some 500 MB of text
+constexpr double kDenseRate = 60, kMaxRate = 240;                  // frames a second
+constexpr double kTimeRounding = 2e-6;                             // of a time in single precision
+constexpr std::uint64_t kMaxJointFrames = std::uint64_t{1} << 24;  // joints x frames of a file: some 500 MB of text
 constexpr std::string_view kEndSite = "_end";
 constexpr double kMoved = 1e-6;  // of the skeleton's size: a joint farther from its offset gets position channels
 
@@ -117,7 +117,7 @@ class BvhWriter {
   // Throws before memory or time is asked for.
   void checkSize() const {
     const std::uint64_t joints = skeleton_.jointCount();
-    if (joints * frames_ <= kMostJointFrames) return;
+    if (joints * frames_ <= kMaxJointFrames) return;
     throw Error(ErrorCode::kLimit, fmt::format("{} joints in {} frames are too many for a BVH file", joints, frames_),
                 fmt::format("clip '{}'", shortened(clip_.name)), "choose a lower --fps or a part of the clip");
   }
@@ -156,9 +156,9 @@ class BvhWriter {
   }
 
   Vec3 offsetOf(Index j) const {
-    const Vec3 place = restGlobals_[j].translation();
+    const Vec3 position = restGlobals_[j].translation();
     const std::optional<Index> parent = skeleton_.joints[j].parent;
-    return parent ? Vec3(place - restGlobals_[*parent].translation()) : place;
+    return parent ? Vec3(position - restGlobals_[*parent].translation()) : position;
   }
 
   std::vector<BvhJointFrame> framesAt(Index frame) const {
@@ -261,7 +261,7 @@ class BvhWriter {
 }  // namespace
 
 double bvhFrameRate(const Motion& motion, std::size_t clip) {
-  constexpr int kMostFiner = 16;
+  constexpr int kMaxRefinement = 16;
   constexpr double kOnFrame = 0.02;  // of a frame
   const double rate = frameRateOf(motion, clip), finest = std::max(rate, kDenseRate);
   std::vector<float> times;
@@ -273,7 +273,7 @@ double bvhFrameRate(const Motion& motion, std::size_t clip) {
   std::sort(times.begin(), times.end());
   times.erase(std::unique(times.begin(), times.end()), times.end());
   if (times.size() > 2) times.pop_back();  // a clip may end between two frames
-  for (int finer = 1; finer <= kMostFiner && finer * rate <= kMostRate; ++finer) {
+  for (int finer = 1; finer <= kMaxRefinement && finer * rate <= kMaxRate; ++finer) {
     const auto isFrame = [&](float time) {
       const double frames = double{time} * finer * rate;
       return std::abs(frames - std::round(frames)) <= kOnFrame + kTimeRounding * frames;

@@ -136,7 +136,7 @@ void premultiply(const Affine& frame, NodeTracks& tracks) {
   }
 }
 
-std::string animationPlace(const gltf::Document& document, Index animation) {
+std::string animationLocation(const gltf::Document& document, Index animation) {
   const std::string& name = document.animations[animation].name;
   return name.empty() ? fmt::format("animations[{}]", animation) : fmt::format("animation '{}'", name);
 }
@@ -159,7 +159,7 @@ void checkKeySharing(const Asset& asset, std::span<const Index> animations) {
       }
       if (read <= most) continue;
       throw Error(ErrorCode::kLimit, "shares its keys among so many channels that they take too much memory",
-                  animationPlace(asset.document, a), "export it with fewer clips or moving nodes");
+                  animationLocation(asset.document, a), "export it with fewer clips or moving nodes");
     }
   }
 }
@@ -368,10 +368,10 @@ class ClipReader {
   }
 
   static void addTimesBetween(std::vector<float>& times) {
-    constexpr double kRate = 60, kMostSamples = 1e6;
+    constexpr double kRate = 60, kMaxSamples = 1e6;
     const auto [first, last] = std::minmax_element(times.begin(), times.end());
     const double begin = *first, samples = (double{*last} - begin) * kRate;
-    for (double i = 1; i < samples && samples < kMostSamples; ++i)
+    for (double i = 1; i < samples && samples < kMaxSamples; ++i)
       times.push_back(static_cast<float>(begin + i / kRate));
     sortUnique(times);
   }
@@ -390,22 +390,22 @@ class ClipReader {
 
   [[noreturn]] void failTooLong() const {
     throw Error(ErrorCode::kLimit, "is too long, with those before it, for all that hangs on nodes that they move",
-                animationPlace(asset_.document, number_), "shorten them, or let their nodes stand still");
+                animationLocation(asset_.document, number_), "shorten them, or let their nodes stand still");
   }
 
   // A part that no channel moves stays where the node has it, which may be off the rest pose.
   void keepStanding(Index j, NodeTracks& tracks) const {
-    const Transform &stands = nodePose_.locals[j], &rest = skeleton_.skeleton.joints[j].rest;
+    const Transform &nodeRest = nodePose_.locals[j], &rest = skeleton_.skeleton.joints[j].rest;
     constexpr double kTolerance = 1e-5;
     const double size = std::max(box_.diagonal(), rest.translation.norm());
-    if (!tracks.translation && (stands.translation - rest.translation).norm() > kTolerance * size) {
-      tracks.translation = constantTrack(Vec3f(stands.translation.cast<float>()));
+    if (!tracks.translation && (nodeRest.translation - rest.translation).norm() > kTolerance * size) {
+      tracks.translation = constantTrack(Vec3f(nodeRest.translation.cast<float>()));
     }
-    if (!tracks.rotation && stands.rotation.angularDistance(rest.rotation) > kTolerance) {
-      tracks.rotation = constantTrack(Eigen::Quaternionf(stands.rotation.cast<float>()));
+    if (!tracks.rotation && nodeRest.rotation.angularDistance(rest.rotation) > kTolerance) {
+      tracks.rotation = constantTrack(Eigen::Quaternionf(nodeRest.rotation.cast<float>()));
     }
-    if (!tracks.scale && (stands.scale - rest.scale).norm() > kTolerance * rest.scale.norm()) {
-      tracks.scale = constantTrack(Vec3f(stands.scale.cast<float>()));
+    if (!tracks.scale && (nodeRest.scale - rest.scale).norm() > kTolerance * rest.scale.norm()) {
+      tracks.scale = constantTrack(Vec3f(nodeRest.scale.cast<float>()));
     }
   }
 
@@ -517,17 +517,17 @@ class ClipWriter {
  private:
   void writeJoint(Index j, NodeTracks& tracks) {
     const Joint& joint = skeleton_.skeleton.joints[j];
-    const Transform& stands = nodePose_.locals[j];
+    const Transform& nodeRest = nodePose_.locals[j];
     // All three parts of a root below a frame hang together; elsewhere only those that say something are written.
     const bool framed = !frames_[j].matrix().isIdentity(0);
-    if (framed && !tracks.any() && same(joint.rest, stands)) return;
-    if (!tracks.translation && (framed || differs(joint.rest.translation, stands.translation))) {
+    if (framed && !tracks.any() && same(joint.rest, nodeRest)) return;
+    if (!tracks.translation && (framed || differs(joint.rest.translation, nodeRest.translation))) {
       tracks.translation = constantTrack(Vec3f(joint.rest.translation.cast<float>()));
     }
-    if (!tracks.rotation && (framed || joint.rest.rotation.angularDistance(stands.rotation) > kSameTransform)) {
+    if (!tracks.rotation && (framed || joint.rest.rotation.angularDistance(nodeRest.rotation) > kSameTransform)) {
       tracks.rotation = constantTrack(Eigen::Quaternionf(joint.rest.rotation.cast<float>()));
     }
-    if (!tracks.scale && (framed || differs(joint.rest.scale, stands.scale))) {
+    if (!tracks.scale && (framed || differs(joint.rest.scale, nodeRest.scale))) {
       tracks.scale = constantTrack(Vec3f(joint.rest.scale.cast<float>()));
     }
     if (framed) intoFrame(j, tracks);

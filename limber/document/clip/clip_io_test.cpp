@@ -263,8 +263,8 @@ TEST(ClipIo, FollowsMovingNodesAboveTheRoot) {
   motion.clips.erase(motion.clips.begin() + 1, motion.clips.end());
   Asset asset = belowArmature(motion);
   gltf::Animation& animation = asset.document.animations[0];
-  const std::vector<float> times = {0, 0.3f, 0.9f}, places = {0, 0, 0, 1, 2, 3, 0, 1, 0};
-  const Index input = addFloatAccessor(asset, times, 1, 0, true), output = addFloatAccessor(asset, places, 3);
+  const std::vector<float> times = {0, 0.3f, 0.9f}, positions = {0, 0, 0, 1, 2, 3, 0, 1, 0};
+  const Index input = addFloatAccessor(asset, times, 1, 0, true), output = addFloatAccessor(asset, positions, 3);
   const Index sampler = addElement(animation.samplers, {{}, input, output});
   const Index armature = asset.document.nodeCount() - 1;
   animation.channels.push_back({{}, sampler, {{}, armature, "translation"}});
@@ -372,26 +372,26 @@ TEST(ClipIo, LeavesInvalidKeysOut) {
   EXPECT_EQ(warnings.items()[0].count, 4u);
 }
 
-void expectLimitIn(const Asset& asset, const std::string& place) {
+void expectLimitIn(const Asset& asset, const std::string& location) {
   Warnings warnings;
   try {
     readClips(asset, readSkeleton(asset), warnings);
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::kLimit);
-    EXPECT_THAT(error.what(), ::testing::HasSubstr(place));
+    EXPECT_THAT(error.what(), ::testing::HasSubstr(location));
   }
 }
 
 TEST(ClipIo, LongChainsAboveARootAreRefusedBeforeTheyAreSampled) {
   testing::GltfBuilder model = testing::everythingModel();
   const Index times = model.accessor<float>({0, 600}, 5126, "SCALAR", 2);  // 36 000 samples
-  const Index places = model.accessor<float>({0, 1, 0, 3, 1, 0}, 5126, "VEC3", 2);
+  const Index slots = model.accessor<float>({0, 1, 0, 3, 1, 0}, 5126, "VEC3", 2);
   Index top = 0;
   for (int i = 0; i < 2000; ++i) top = model.push("nodes", {{"children", {top}}});
   model.json["scenes"][0]["nodes"] = {top, 2};
   Json& animation = model.json["animations"][0];
-  animation["samplers"].push_back({{"input", times}, {"output", places}});
+  animation["samplers"].push_back({{"input", times}, {"output", slots}});
   animation["channels"].push_back({{"sampler", 1}, {"target", {{"node", top}, {"path", "translation"}}}});
   expectLimitIn(readAsset(model.glb(), "chain.glb"), "animation 'turn'");
 }

@@ -45,9 +45,9 @@ class ParentSettler {
     const AccessorSweep accessors(asset_);
     const BufferViewSweep views(asset_);
     const AssetSkeleton carried = carriedNodes();
-    Warnings told;  // of keys that are none by whoever reads the skeleton's own clips
-    const std::vector<Clip> clips = readClips(asset_, carried, moving, told);
-    for (const Warning& warning : told.items()) {
+    Warnings warnings;  // of keys that are none by whoever reads the skeleton's own clips
+    const std::vector<Clip> clips = readClips(asset_, carried, moving, warnings);
+    for (const Warning& warning : warnings.items()) {
       if (warning.kind != "moving-parents") continue;
       asset_.warnings.add(warning.kind, warning.message, warning.where, warning.count);
     }

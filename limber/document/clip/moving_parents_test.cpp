@@ -18,7 +18,7 @@ namespace {
 Asset movingArmature() {
   testing::GltfBuilder model = testing::everythingModel();
   const Index times = model.accessor<float>({0, 1}, 5126, "SCALAR", 2);
-  const Index places = model.accessor<float>({0, 1, 0, 3, 1, 0}, 5126, "VEC3", 2);
+  const Index slots = model.accessor<float>({0, 1, 0, 3, 1, 0}, 5126, "VEC3", 2);
   model.push("nodes", {{"name", "prop"}, {"camera", 0}, {"translation", {0.0, 0.0, 2.0}}});
   model.push("nodes", {{"name", "armature"},
                        {"children", {0, 2, 4}},
@@ -26,13 +26,13 @@ Asset movingArmature() {
                        {"scale", {0.5, 0.5, 0.5}}});
   model.json["scenes"][0]["nodes"] = {5};
   Json& animation = model.json["animations"][0];
-  animation["samplers"].push_back({{"input", times}, {"output", places}});
+  animation["samplers"].push_back({{"input", times}, {"output", slots}});
   animation["channels"].push_back({{"sampler", 1}, {"target", {{"node", 5}, {"path", "translation"}}}});
   return readAsset(model.glb(), "armature.glb");
 }
 
 // Where one node is at a moment of the first animation, as a skeleton of that node alone reads it.
-Vec3 placeAt(const Asset& asset, Index node, double seconds) {
+Vec3 positionAt(const Asset& asset, Index node, double seconds) {
   AssetSkeleton alone;
   alone.skeleton.joints.emplace_back().name = "alone";
   alone.jointNode = {node};
@@ -59,10 +59,10 @@ TEST(MovingParents, StandStillAndWhatHangsOnThemMoves) {
   EXPECT_THAT(channelsOf(asset), ::testing::Not(::testing::Contains(::testing::StartsWith("body"))));
   for (const Index node : {0u, 1u, 3u, 4u}) {
     for (const double seconds : {0.0, 0.4, 1.0}) {
-      EXPECT_LT((placeAt(asset, node, seconds) - placeAt(before, node, seconds)).norm(), 1e-5) << node;
+      EXPECT_LT((positionAt(asset, node, seconds) - positionAt(before, node, seconds)).norm(), 1e-5) << node;
     }
   }
-  EXPECT_NEAR((placeAt(asset, 4, 1) - placeAt(asset, 4, 0)).x(), 3, 1e-5);
+  EXPECT_NEAR((positionAt(asset, 4, 1) - positionAt(asset, 4, 0)).x(), 3, 1e-5);
   ASSERT_EQ(asset.warnings.items().size(), 1u);
   EXPECT_EQ(asset.warnings.items()[0].kind, "moving-parents");
 
@@ -79,7 +79,7 @@ TEST(MovingParents, ReplacedClipsMoveOnce) {
   replaceClips(asset, rig, readClips(asset, rig, warnings));
   for (const Index node : {0u, 1u, 4u}) {
     for (const double seconds : {0.0, 0.4, 1.0}) {
-      EXPECT_LT((placeAt(asset, node, seconds) - placeAt(before, node, seconds)).norm(), 1e-5) << node;
+      EXPECT_LT((positionAt(asset, node, seconds) - positionAt(before, node, seconds)).norm(), 1e-5) << node;
     }
   }
 }
@@ -106,7 +106,7 @@ TEST(MovingParents, ATrackThatRepeatsTheNodesOwnTransformMovesNothing) {
       EXPECT_EQ(writeGlb(asset), writeGlb(before));
     }
     for (const Index node : {0u, 4u}) {
-      EXPECT_LT((placeAt(asset, node, 0.5) - placeAt(before, node, 0.5)).norm(), 1e-5) << node;
+      EXPECT_LT((positionAt(asset, node, 0.5) - positionAt(before, node, 0.5)).norm(), 1e-5) << node;
     }
   }
 }

@@ -19,11 +19,11 @@ namespace limber {
 namespace {
 
 constexpr int kPoseVersion = 1;
-constexpr std::size_t kMostBytes = 4'000'000;  // some 300 for each joint
-constexpr std::size_t kMostJoints = 2000;      // characters have a few hundred at most
-constexpr double kFarthest = 1e6;              // metres, and as a scale; the least scale is one over it
-constexpr double kUnitWithin = 1e-3;           // of a quaternion's length
-constexpr double kExactlyUnit = 1e-12;         // what is nearer stays as it is, bit for bit
+constexpr std::size_t kMaxBytes = 4'000'000;  // some 300 for each joint
+constexpr std::size_t kMaxJoints = 2000;      // characters have a few hundred at most
+constexpr double kFarthest = 1e6;             // metres, and as a scale; the least scale is one over it
+constexpr double kUnitWithin = 1e-3;          // of a quaternion's length
+constexpr double kExactlyUnit = 1e-12;        // what is nearer stays as it is, bit for bit
 
 template <class Vector>
 Json listJson(const Vector& vector) {
@@ -42,7 +42,7 @@ Json transformJson(const Transform& transform) {
   return json;
 }
 
-bool standsAtRest(const Transform& rest, const Transform& local) {
+bool isAtRest(const Transform& rest, const Transform& local) {
   return rest.translation == local.translation && rest.rotation.coeffs() == local.rotation.coeffs() &&
          rest.scale == local.scale;
 }
@@ -108,14 +108,14 @@ std::string poseToJson(const PortablePose& pose) {
     if (joint.parent) entry["parent"] = pose.skeleton.joints[*joint.parent].name;
     entry["rest"] = transformJson(joint.rest);
     const Transform& local = pose.pose.locals[j];
-    if (!standsAtRest(joint.rest, local)) entry["local"] = transformJson(local);
+    if (!isAtRest(joint.rest, local)) entry["local"] = transformJson(local);
     joints.push_back(std::move(entry));
   }
   return dumpReport({{"limber_pose", kPoseVersion}, {"name", pose.name}, {"joints", std::move(joints)}}, 1);
 }
 
 PortablePose poseFromJson(std::string_view text) {
-  if (text.size() > kMostBytes) throw Error(ErrorCode::kLimit, "the pose is larger than 4 MB");
+  if (text.size() > kMaxBytes) throw Error(ErrorCode::kLimit, "the pose is larger than 4 MB");
   Warnings warnings;
   const Json document = parseJson(text, warnings);
   const JsonView root(document);
@@ -131,8 +131,8 @@ PortablePose poseFromJson(std::string_view text) {
   pose.name = root.text("name");
   const JsonView joints = root.array("joints");
   if (joints.size() == 0) root.fail("has no \"joints\"");
-  if (joints.size() > kMostJoints) {
-    throw Error(ErrorCode::kLimit, fmt::format("the pose has more than {} joints", kMostJoints), joints.path());
+  if (joints.size() > kMaxJoints) {
+    throw Error(ErrorCode::kLimit, fmt::format("the pose has more than {} joints", kMaxJoints), joints.path());
   }
   std::map<std::string, Index> known;
   for (std::size_t j = 0; j < joints.size(); ++j) {

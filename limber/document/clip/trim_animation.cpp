@@ -108,8 +108,8 @@ Index addValues(Asset& asset, AccessorInfo info, const std::vector<float>& numbe
   withComponentType(info.type, [&](auto component) {
     using T = decltype(component);
     for (std::size_t i = 0; i < numbers.size(); ++i) {
-      constexpr double kLeast = std::numeric_limits<T>::lowest(), kMost = std::numeric_limits<T>::max();
-      const auto whole = static_cast<T>(std::clamp(std::round(double{numbers[i]}), kLeast, kMost));
+      constexpr double kMin = std::numeric_limits<T>::lowest(), kMax = std::numeric_limits<T>::max();
+      const auto whole = static_cast<T>(std::clamp(std::round(double{numbers[i]}), kMin, kMax));
       std::memcpy(bytes.data() + i * sizeof(T), &whole, sizeof(T));
     }
   });

@@ -99,9 +99,9 @@ class FbxClipWriter {
   void findMoved(const std::vector<Index>& chosen, const std::vector<ClipCurves>& clips) {
     for (const ClipCurves& curves : clips) {
       for (const auto& [of, keys] : curves) {
-        const Vec3f stands = standing(of.first, of.second).cast<float>();
+        const Vec3f restDirection = standing(of.first, of.second).cast<float>();
         const bool moves = std::any_of(keys.values.begin(), keys.values.end(),
-                                       [&](const Vec3& value) { return value.cast<float>() != stands; });
+                                       [&](const Vec3& value) { return value.cast<float>() != restDirection; });
         if (moves) moved_.insert(of);
       }
     }

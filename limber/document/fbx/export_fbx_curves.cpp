@@ -9,9 +9,9 @@ namespace limber {
 
 namespace {
 
-constexpr int kMostFbxHalvings = 8;      // halvings between two keys
+constexpr int kMaxFbxHalvings = 8;       // halvings between two keys
 constexpr double kFbxBeforeStep = 1e-4;  // seconds
-constexpr double kMostDegrees = 90;      // between two keys: readers that blend rotations go the same way round
+constexpr double kMaxDegrees = 90;       // between two keys: readers that blend rotations go the same way round
 
 // Adds keys to a list, each after the one before.
 template <typename ValueAt, typename IsStraight>
@@ -28,7 +28,7 @@ class FbxKeyAdder {
   // What is needed between the last key and `to`, and that.
   void addUpTo(double to, int depth = 0) {
     const double from = keys_.times.back();
-    if (depth < kMostFbxHalvings && !isStraight_(from, keys_.values.back(), to)) {
+    if (depth < kMaxFbxHalvings && !isStraight_(from, keys_.values.back(), to)) {
       addUpTo(from + 0.5 * (to - from), depth + 1);
       addUpTo(to, depth + 1);
     } else {
@@ -91,7 +91,7 @@ FbxKeys fbxKeys(const Track<Eigen::Quaternionf>& track, const Quat& turn) {
   };
   const auto isStraight = [&](double from, const Vec3& start, double to) {
     const Vec3 end = eulerDegreesNear(rotationAt(to), start);
-    if ((end - start).cwiseAbs().maxCoeff() > kMostDegrees) return false;
+    if ((end - start).cwiseAbs().maxCoeff() > kMaxDegrees) return false;
     for (const double u : {0.25, 0.5, 0.75}) {
       const Quat line = eulerRotation(start + u * (end - start));
       if (line.angularDistance(rotationAt(from + u * (to - from))) > kFbxAngleTolerance * kDegree) return false;

@@ -22,13 +22,13 @@ constexpr std::array<std::string_view, 3> kAxes = {"d|X", "d|Y", "d|Z"};
 constexpr std::string_view kPercent = "d|DeformPercent";
 
 constexpr double kTolerance = 1e-4;  // radians, or of what a track moves through
-constexpr double kLeastMove = 0.1;   // of its values: what moves through less is mostly noise of the numbers
+constexpr double kMinMove = 0.1;     // of its values: what moves through less is mostly noise of the numbers
 // Keys of the file that are no farther apart than a picture of a film takes were baked: nothing comes between them.
 // Parts as short of longer spans are divided for a larger error only.
 constexpr std::int64_t kShortSpan = kFbxTicksPerSecond / 24;
 constexpr double kShortSpanTolerance = 5;                          // times as large
 constexpr std::int64_t kShortestSplit = kFbxTicksPerSecond / 120;  // spans up to here are not divided
-constexpr int kMostHalvings = 10;
+constexpr int kMaxHalvings = 10;
 constexpr std::size_t kNumbersOfAKey = 4;  // of a rotation; longer rows count as several keys
 
 [[noreturn]] void failShared(const std::string& clip) {
@@ -87,25 +87,25 @@ class TrackSampler {
     }
     double reach = 0;
     for (Eigen::Index k = 0; k < count; ++k) {
-      reach = std::max({reach, (here.col(k) - here.col(0)).norm(), kLeastMove * here.col(k).norm()});
+      reach = std::max({reach, (here.col(k) - here.col(0)).norm(), kMinMove * here.col(k).norm()});
     }
     tolerance_ = isRotation_ ? kTolerance : kTolerance * reach;
     // Whether it stands still between all keys and jumps at some.
-    bool steps = false, stands = true;
+    bool steps = false, isConstant = true;
     for (std::size_t k = 0; k + 1 < keys.size(); ++k) {
       const auto from = static_cast<Eigen::Index>(k), to = from + 1;
       steps = steps || here.col(to) != left.col(to);
-      stands = stands && here.col(from) == left.col(to) &&
-               at_(keys[k] + (keys[k + 1] - keys[k]) / 2, false) == here.col(from);
+      isConstant = isConstant && here.col(from) == left.col(to) &&
+                   at_(keys[k] + (keys[k + 1] - keys[k]) / 2, false) == here.col(from);
     }
     FbxTrack track;
-    if (steps && stands) track.interpolation = Interpolation::kStep;
+    if (steps && isConstant) track.interpolation = Interpolation::kStep;
     for (std::size_t k = 0; k < keys.size(); ++k) {
       const auto column = static_cast<Eigen::Index>(k);
       const Row row = here.col(column), before = left.col(column);
       if (k > 0 && track.interpolation == Interpolation::kLinear) {
         const bool isBaked = keys[k] - keys[k - 1] <= kShortSpan;
-        addBetween(track, {keys[k - 1], keys[k]}, here.col(column - 1), before, isBaked ? 0 : kMostHalvings);
+        addBetween(track, {keys[k - 1], keys[k]}, here.col(column - 1), before, isBaked ? 0 : kMaxHalvings);
         // One tick before: as times in float this may be the same moment, which the next float down then stands for.
         if (before != row && keys[k] - 1 > keys[k - 1]) add(track, keys[k] - 1, before);
       }

@@ -47,11 +47,11 @@ KeyRuns keyRuns(const FbxNode& node) {
                fbxNumbers(node, "KeyAttrDataFloat")};
   // Text files since 7.2 have the bits of these floats as integers, older ones and binary files the floats themselves:
   // whole numbers then, but smaller ones than the bits of any float but zero and what is next to it.
-  constexpr std::int64_t kLeastBits = 1 << 23;
+  constexpr std::int64_t kMinBits = 1 << 23;
   const FbxNode* data = node.find("KeyAttrDataFloat");
   const auto* bits = data && !data->values.empty() ? std::get_if<std::vector<std::int64_t>>(&data->values[0]) : nullptr;
   const bool areBits = bits && std::any_of(bits->begin(), bits->end(), [](std::int64_t number) {
-                         return number >= kLeastBits || number <= -kLeastBits;
+                         return number >= kMinBits || number <= -kMinBits;
                        });
   for (std::size_t i = 0; areBits && i < bits->size(); ++i) {
     runs.numbers[i] = bitCast<float>(static_cast<std::uint32_t>((*bits)[i]));

@@ -15,8 +15,8 @@ inline constexpr std::int64_t kFbxTicksPerSecond = 46186158000;
 
 // Within nine days of 0: differences stay within 64 bits. The SDK writes times without end as the largest integers.
 inline bool isFbxTime(std::int64_t ticks) {
-  constexpr std::int64_t kMostTicks = std::int64_t{1} << 55;
-  return ticks >= -kMostTicks && ticks <= kMostTicks;
+  constexpr std::int64_t kMaxTicks = std::int64_t{1} << 55;
+  return ticks >= -kMaxTicks && ticks <= kMaxTicks;
 }
 
 struct FbxKey {

@@ -29,9 +29,9 @@ struct FbxPolygons {
 
 FbxPolygons readPolygons(const FbxNode& geometry) {
   FbxPolygons result;
-  const std::vector<double> places = fbxNumbers(geometry, "Vertices");
-  for (std::size_t i = 0; i + 2 < places.size(); i += 3) {
-    result.points.emplace_back(places[i], places[i + 1], places[i + 2]);
+  const std::vector<double> positions = fbxNumbers(geometry, "Vertices");
+  for (std::size_t i = 0; i + 2 < positions.size(); i += 3) {
+    result.points.emplace_back(positions[i], positions[i + 1], positions[i + 2]);
     if (!result.points.back().allFinite()) {
       throw Error(ErrorCode::kBadData, fmt::format("vertex {} has a position that is not a finite number", i / 3));
     }
@@ -78,15 +78,15 @@ class Layer {
 
   // The row of a corner; null where the file has none.
   const double* row(const FbxPolygons& polygons, Index corner) const {
-    std::size_t place = 0;
-    if (by_ == By::kCorner) place = corner;
-    if (by_ == By::kPoint) place = polygons.corners[corner];
-    if (by_ == By::kPolygon) place = polygons.polygon[corner];
+    std::size_t slot = 0;
+    if (by_ == By::kCorner) slot = corner;
+    if (by_ == By::kPoint) slot = polygons.corners[corner];
+    if (by_ == By::kPolygon) slot = polygons.polygon[corner];
     if (isIndexed_) {
-      if (place >= index_.size() || index_[place] < 0) return nullptr;
-      place = static_cast<std::size_t>(index_[place]);
+      if (slot >= index_.size() || index_[slot] < 0) return nullptr;
+      slot = static_cast<std::size_t>(index_[slot]);
     }
-    return place < values_.size() / components_ ? &values_[place * components_] : nullptr;
+    return slot < values_.size() / components_ ? &values_[slot * components_] : nullptr;
   }
 
  private:
@@ -177,7 +177,7 @@ class FbxMeshBuilder {
   }
 
   bool hasRoom(std::size_t sets) {
-    if (sets < kMostSets) return true;
+    if (sets < kMaxSets) return true;
     asset_.warnings.add("attribute-sets", "texture coordinates and colours beyond eight sets of each are left out",
                         name_);
     return false;
@@ -240,14 +240,14 @@ class FbxMeshBuilder {
     for (Index p = 0; p < materials_.size(); ++p) {
       const Index corner = polygons_.firstCorner[p];
       const double* row = corner < polygons_.corners.size() && layer.isKnown() ? layer.row(polygons_, corner) : nullptr;
-      if (row && row[0] >= 0 && row[0] < kMostMaterials) materials_[p] = static_cast<Index>(row[0]);
+      if (row && row[0] >= 0 && row[0] < kMaxMaterials) materials_[p] = static_cast<Index>(row[0]);
     }
   }
 
   Index materialOf(Index polygon) const { return materials_.empty() ? 0 : materials_[polygon]; }
 
   void makeTriangles() {
-    std::vector<Vec3> places;
+    std::vector<Vec3> jointPositions;
     std::vector<std::array<Index, 3>> cut;
     std::size_t degenerate = 0;
     for (Index p = 0; p + 1 < polygons_.firstCorner.size(); ++p) {
@@ -256,10 +256,10 @@ class FbxMeshBuilder {
         ++degenerate;
         continue;
       }
-      places.clear();
-      for (Index c = first; c < end; ++c) places.push_back(polygons_.points[polygons_.corners[c]]);
+      jointPositions.clear();
+      for (Index c = first; c < end; ++c) jointPositions.push_back(polygons_.points[polygons_.corners[c]]);
       cut.clear();
-      triangulatePolygon(places, cut);
+      triangulatePolygon(jointPositions, cut);
       for (const auto& [a, b, c] : cut) {
         triangles_.push_back({first + a, first + (isMirrored_ ? c : b), first + (isMirrored_ ? b : c)});
       }
@@ -285,19 +285,19 @@ class FbxMeshBuilder {
   }
 
   void sortByMaterialAndPoint() {
-    std::vector<Index> order(joined_.kept.size()), placeOf(order.size()), kept;
+    std::vector<Index> order(joined_.kept.size()), positionOf(order.size()), kept;
     std::iota(order.begin(), order.end(), 0);
-    const auto key = [&](Index place) {
-      const Index corner = joined_.kept[place];
+    const auto key = [&](Index index) {
+      const Index corner = joined_.kept[index];
       return std::pair(materialOf(polygons_.polygon[corner]), polygons_.corners[corner]);
     };
     std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return key(a) < key(b); });
     for (Index i = 0; i < order.size(); ++i) {
-      placeOf[order[i]] = i;
+      positionOf[order[i]] = i;
       kept.push_back(joined_.kept[order[i]]);
     }
     joined_.kept = std::move(kept);
-    for (Index& vertex : joined_.vertex) vertex = placeOf[vertex];
+    for (Index& vertex : joined_.vertex) vertex = positionOf[vertex];
   }
 
   std::vector<FbxPrimitive> primitives() {
@@ -319,10 +319,10 @@ class FbxMeshBuilder {
     }
     std::vector<FbxPrimitive> result;
     for (auto& [material, part] : parts) {
-      std::vector<Index> places(part.corners.size());
-      std::iota(places.begin(), places.end(), 0);
+      std::vector<Index> jointPositions(part.corners.size());
+      std::iota(jointPositions.begin(), jointPositions.end(), 0);
       for (const Index corner : part.corners) part.vertices.vertex.push_back(joined_.vertex[corner] - part.first);
-      result.push_back({primitive(part.vertices, std::move(places)), material});
+      result.push_back({primitive(part.vertices, std::move(jointPositions)), material});
     }
     return result;
   }
@@ -364,8 +364,8 @@ class FbxMeshBuilder {
     return addFloatAccessor(asset_, values, 3, kVertexTarget, withBounds);
   }
 
-  static constexpr double kMostMaterials = 65536;
-  static constexpr std::size_t kMostSets = 8;
+  static constexpr double kMaxMaterials = 65536;
+  static constexpr std::size_t kMaxSets = 8;
 
   Asset& asset_;
   const FbxNode& geometry_;

@@ -13,7 +13,7 @@ namespace limber {
 
 namespace {
 
-constexpr Index kMostInfluences = 8;
+constexpr Index kMaxInfluences = 8;
 
 struct FbxInfluence {
   Index joint;
@@ -118,23 +118,23 @@ class SkinReader {
       skin_.inverseBinds.push_back(skin_.toBound.inverse());
       skin_.needsOwnModel = true;
     }
-    budget_.spend(2 * kMostInfluences * rows_.size());
-    skin_.weights.slots = kMostInfluences;
-    skin_.weights.joints.assign(rows_.size() * kMostInfluences, 0);
-    skin_.weights.weights.assign(rows_.size() * kMostInfluences, 0.0f);
+    budget_.spend(2 * kMaxInfluences * rows_.size());
+    skin_.weights.slots = kMaxInfluences;
+    skin_.weights.joints.assign(rows_.size() * kMaxInfluences, 0);
+    skin_.weights.weights.assign(rows_.size() * kMaxInfluences, 0.0f);
     for (std::size_t v = 0; v < rows_.size(); ++v) {
       std::vector<FbxInfluence>& row = rows_[v];
       if (row.empty()) row.push_back({ownJoint, 1});
       std::stable_sort(row.begin(), row.end(),
                        [](const FbxInfluence& a, const FbxInfluence& b) { return a.weight > b.weight; });
-      row.resize(std::min<std::size_t>(row.size(), kMostInfluences));
+      row.resize(std::min<std::size_t>(row.size(), kMaxInfluences));
       const double sum = std::accumulate(row.begin(), row.end(), 0.0,
                                          [](double total, const FbxInfluence& i) { return total + i.weight; });
       for (std::size_t i = 0; i < row.size(); ++i) {
         const auto weight = static_cast<float>(row[i].weight / sum);
         if (weight == 0) continue;
-        skin_.weights.joints[v * kMostInfluences + i] = row[i].joint;
-        skin_.weights.weights[v * kMostInfluences + i] = weight;
+        skin_.weights.joints[v * kMaxInfluences + i] = row[i].joint;
+        skin_.weights.weights[v * kMaxInfluences + i] = weight;
       }
     }
   }
@@ -200,12 +200,12 @@ void FbxShapeChannel::addWeights(double percentage, std::vector<double>& weights
   std::size_t next = 1;
   while (next < targets.size() && percentOf(next) <= percentage) ++next;
   const double before = percentOf(next - 1), span = percentOf(next) - before;
-  const double share = span != 0 ? (percentage - before) / span : 1;
+  const double fraction = span != 0 ? (percentage - before) / span : 1;
   const auto add = [&](std::size_t key, double weight) {
     if (key != bare) weights[targets[key < bare ? key : key - 1]] += weight;
   };
-  add(next - 1, 1 - share);
-  add(next, share);
+  add(next - 1, 1 - fraction);
+  add(next, fraction);
 }
 
 FbxShapes readFbxShapes(const FbxObjects& objects, Index geometry, FbxBudget& budget, Warnings& warnings) {

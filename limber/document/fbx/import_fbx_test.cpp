@@ -397,7 +397,7 @@ TEST(ImportFbx7, AStackWithoutEndsHasThoseOfItsKeys) {
 
 TEST(ImportFbx7, PolygonsLayersAndMaterials) {
   // A square and a concave pentagon beside it that shares an edge; a normal for all, texture coordinates by corner.
-  const std::vector<double> places = {0, 0, 0, 2, 0, 0, 2, 2, 0, 0, 2, 0, 4, 0, 0, 3, 1, 0, 4, 2, 0};
+  const std::vector<double> positions = {0, 0, 0, 2, 0, 0, 2, 2, 0, 0, 2, 0, 4, 0, 0, 3, 1, 0, 4, 2, 0};
   const std::string layers =
       "LayerElementNormal: 0 {\nMappingInformationType: \"AllSame\"\nReferenceInformationType: \"Direct\"\n" +
       array("Normals", {0, 0, 2}) +
@@ -407,7 +407,7 @@ TEST(ImportFbx7, PolygonsLayersAndMaterials) {
       "}\nLayerElementMaterial: 0 {\nMappingInformationType: \"ByPolygon\"\nReferenceInformationType: "
       "\"IndexToDirect\"\n" +
       wholes("Materials", {1, 0}) + "}\n";
-  const std::string geometry = "Geometry: 3, \"Geometry::Flat\", \"Mesh\" {\n" + array("Vertices", places) +
+  const std::string geometry = "Geometry: 3, \"Geometry::Flat\", \"Mesh\" {\n" + array("Vertices", positions) +
                                wholes("PolygonVertexIndex", {0, 1, 2, -4, 1, 4, 5, 6, -3}) + layers + "}\n";
   const std::string red = "Material: 5, \"Material::Red\", \"\" {\n" +
                           properties(vector("DiffuseColor", {1, 0, 0}) + number("Opacity", 0.5)) + "}\n";
@@ -444,7 +444,7 @@ TEST(ImportFbx7, ASkinStandsWhereItWasBoundAndBendsWithItsJoints) {
   // The mesh's model is turned and scaled; the joint was bound elsewhere than it stands.
   const Affine mesh = Eigen::Translation3d(1, 2, 3) * Affine(turns({0, 90, 0}, {0, 1, 2})) * Eigen::Scaling(2.0);
   const Affine bound = Eigen::Translation3d(0, 1, 0) * Affine(turns({45, 0, 0}, {0, 1, 2}));
-  const Affine stands = Affine(Eigen::Translation3d(0, 1, 5));
+  const Affine nodeTransform = Affine(Eigen::Translation3d(0, 1, 5));
   const std::string cluster = "Deformer: 6, \"SubDeformer::c\", \"Cluster\" {\n" + wholes("Indexes", {0, 1}) +
                               array("Weights", {1, 0.5}) + matrix("Transform", bound.inverse() * mesh) +
                               matrix("TransformLink", bound) + "}\n";
@@ -462,14 +462,14 @@ TEST(ImportFbx7, ASkinStandsWhereItWasBoundAndBendsWithItsJoints) {
     return Vec3(graph.world[skin.joints[joint]] * inverseBind * point);
   };
   const gltf::Primitive& primitive = asset.document.meshes.at(0).primitives.at(0);
-  const std::vector<float> places = readFloats(asset, *primitive.attributes.find("POSITION"));
+  const std::vector<float> positions = readFloats(asset, *primitive.attributes.find("POSITION"));
   for (Index v = 0; v < 3; ++v) {
     const Vec3 own(kTriangle[3 * v], kTriangle[3 * v + 1], kTriangle[3 * v + 2]);
-    const Vec3 place = Eigen::Map<const Vec3f>(&places[3 * v]).cast<double>();
-    EXPECT_LT((place - mesh * own).norm(), 1e-5);  // in the world as it was bound
+    const Vec3 position = Eigen::Map<const Vec3f>(&positions[3 * v]).cast<double>();
+    EXPECT_LT((position - mesh * own).norm(), 1e-5);  // in the world as it was bound
     const Vec3 wanted =
-        v < 2 ? stands * bound.inverse() * mesh * own : own + Vec3(7, 0, 0);  // without weights: its model
-    EXPECT_LT((shown(v < 2 ? 0 : 1, place) - wanted).norm(), 1e-5);
+        v < 2 ? nodeTransform * bound.inverse() * mesh * own : own + Vec3(7, 0, 0);  // without weights: its model
+    EXPECT_LT((shown(v < 2 ? 0 : 1, position) - wanted).norm(), 1e-5);
   }
   const std::vector<float> weights = readFloats(asset, *primitive.attributes.find("WEIGHTS_0"));
   EXPECT_EQ(weights[0], 1);

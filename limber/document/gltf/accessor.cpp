@@ -81,7 +81,7 @@ std::vector<Index> readIndices(const Asset& asset, Index accessor) {
       readElements<T>(
           layout, [](T value) { return Index{value}; }, values);
     } else {
-      throw Error(ErrorCode::kBadData, "must be of an unsigned component type", accessorPlace(accessor));
+      throw Error(ErrorCode::kBadData, "must be of an unsigned component type", accessorLocation(accessor));
     }
   });
   return values;

@@ -37,37 +37,37 @@ void setShape(gltf::ElementType type, AccessorLayout& layout) {
 }
 
 // The view that something at `place` names.
-ViewLayout viewOf(const Asset& asset, Index view, const std::string& place) {
-  requireElement(view, asset.document.bufferViews.size(), [&] { return place + ".bufferView"; });
+ViewLayout viewOf(const Asset& asset, Index view, const std::string& location) {
+  requireElement(view, asset.document.bufferViews.size(), [&] { return location + ".bufferView"; });
   return viewLayout(asset, view);
 }
 
 // Where data begin in their view, checked to be `size` bytes that suit components of `alignment` bytes.
 const std::uint8_t* dataOf(const ViewLayout& view, std::size_t offset, std::uint64_t size, std::size_t alignment,
-                           const std::string& place) {
+                           const std::string& location) {
   if (offset > view.bytes.size() || size > view.bytes.size() - offset) {
-    failAt(place,
+    failAt(location,
            fmt::format("needs {} bytes from byte {} on, but its buffer view has {}", size, offset, view.bytes.size()));
   }
   if ((view.offset + offset) % alignment != 0 || view.stride % alignment != 0) {
-    failAt(place, fmt::format("its data are not aligned to {} bytes", alignment));
+    failAt(location, fmt::format("its data are not aligned to {} bytes", alignment));
   }
   return view.bytes.data() + offset;
 }
 
-void findData(const Asset& asset, const gltf::Accessor& accessor, const std::string& place, AccessorLayout& layout) {
-  const ViewLayout view = viewOf(asset, *accessor.bufferView, place);
+void findData(const Asset& asset, const gltf::Accessor& accessor, const std::string& location, AccessorLayout& layout) {
+  const ViewLayout view = viewOf(asset, *accessor.bufferView, location);
   if (view.stride != 0) {
-    if (view.stride < layout.elementSize) failAt(place, "has elements larger than its buffer view's byteStride");
-    if (view.stride > kMaxStride) failAt(place, fmt::format("has a byteStride above {}", kMaxStride));
+    if (view.stride < layout.elementSize) failAt(location, "has elements larger than its buffer view's byteStride");
+    if (view.stride > kMaxStride) failAt(location, fmt::format("has a byteStride above {}", kMaxStride));
     layout.stride = view.stride;
   }
   const std::uint64_t count = layout.info.count;
   const std::uint64_t size = count == 0 ? 0 : (count - 1) * layout.stride + layout.usedSize();
-  layout.data = dataOf(view, accessor.byteOffset, size, layout.componentBytes, place);
+  layout.data = dataOf(view, accessor.byteOffset, size, layout.componentBytes, location);
 }
 
-void checkZeroCount(const Asset& asset, const std::string& place, Index count) {
+void checkZeroCount(const Asset& asset, const std::string& location, Index count) {
   std::size_t longest = 0;
   for (const Asset::Buffer& buffer : asset.buffers) {
     if (count <= read_bounds::kZeros.larger(longest)) break;
@@ -75,17 +75,17 @@ void checkZeroCount(const Asset& asset, const std::string& place, Index count) {
   }
   if (count > read_bounds::kZeros.larger(longest)) {
     throw Error(ErrorCode::kLimit, fmt::format("has {} elements without data, more than the file's size allows", count),
-                place);
+                location);
   }
 }
 
-SparseLayout findSparse(const Asset& asset, const gltf::Sparse& sparse, const std::string& place,
+SparseLayout findSparse(const Asset& asset, const gltf::Sparse& sparse, const std::string& location,
                         const AccessorLayout& layout) {
   SparseLayout result;
   const std::uint64_t count = sparse.count;
-  if (count > layout.info.count) failAt(place, "has more substitutions than the accessor has elements");
+  if (count > layout.info.count) failAt(location, "has more substitutions than the accessor has elements");
   result.count = static_cast<Index>(count);
-  const std::string indices = place + ".indices", values = place + ".values";
+  const std::string indices = location + ".indices", values = location + ".values";
   result.indexType = sparse.indices.componentType;
   if (result.indexType != ComponentType::kU8 && result.indexType != ComponentType::kU16 &&
       result.indexType != ComponentType::kU32) {
@@ -119,12 +119,13 @@ Index SparseLayout::index(std::size_t i) const {
 
 ViewLayout viewLayout(const Asset& asset, Index index) {
   const gltf::BufferView& view = asset.document.bufferViews[index];
-  const auto place = [&] { return fmt::format("bufferViews[{}]", index); };
-  requireElement(view.buffer, asset.buffers.size(), [&] { return place() + ".buffer"; });
+  const auto location = [&] { return fmt::format("bufferViews[{}]", index); };
+  requireElement(view.buffer, asset.buffers.size(), [&] { return location() + ".buffer"; });
   const Bytes& bytes = asset.buffers[view.buffer].bytes;
   const std::size_t offset = view.byteOffset, length = view.byteLength;
   if (offset > bytes.size() || length > bytes.size() - offset) {
-    failAt(place(), fmt::format("needs {} bytes from byte {} on, but its buffer has {}", length, offset, bytes.size()));
+    failAt(location(),
+           fmt::format("needs {} bytes from byte {} on, but its buffer has {}", length, offset, bytes.size()));
   }
   return {ByteSpan(bytes).subspan(offset, length), offset, view.byteStride};
 }
@@ -135,7 +136,7 @@ AccessorLayout accessorShape(const Asset& asset, Index index) {
   layout.info.type = accessor.componentType;
   layout.info.normalized = accessor.normalized;
   if (accessor.count >= kNoIndex) {
-    throw Error(ErrorCode::kLimit, "has more elements than 32 bits count", accessorPlace(index));
+    throw Error(ErrorCode::kLimit, "has more elements than 32 bits count", accessorLocation(index));
   }
   layout.info.count = static_cast<Index>(accessor.count);
   layout.componentBytes = componentSize(layout.info.type);
@@ -146,16 +147,16 @@ AccessorLayout accessorShape(const Asset& asset, Index index) {
 
 AccessorLayout accessorLayout(const Asset& asset, Index index) {
   const std::size_t count = asset.document.accessors.size();
-  if (index >= count) failAt(accessorPlace(index), fmt::format("is missing: there are {} elements", count));
+  if (index >= count) failAt(accessorLocation(index), fmt::format("is missing: there are {} elements", count));
   const gltf::Accessor& accessor = asset.document.accessors[index];
-  const std::string place = accessorPlace(index);
+  const std::string location = accessorLocation(index);
   AccessorLayout layout = accessorShape(asset, index);
   if (accessor.bufferView) {
-    findData(asset, accessor, place, layout);
+    findData(asset, accessor, location, layout);
   } else {
-    checkZeroCount(asset, place, layout.info.count);
+    checkZeroCount(asset, location, layout.info.count);
   }
-  if (accessor.sparse) layout.sparse = findSparse(asset, *accessor.sparse, place + ".sparse", layout);
+  if (accessor.sparse) layout.sparse = findSparse(asset, *accessor.sparse, location + ".sparse", layout);
   return layout;
 }
 

@@ -74,25 +74,25 @@ void AccessorSweep::sweep(Asset& asset) const {
   const auto countBefore = static_cast<Index>(usedBefore_.size());
   // What stands at each place of the new list. New accessors fill the places that became free, so that as few numbers
   // as possible change: none that was there before, unless the edit takes out more than it adds.
-  std::vector<std::optional<Index>> places(countBefore);
+  std::vector<std::optional<Index>> slots(countBefore);
   for (Index a = 0; a < countBefore; ++a) {
-    if (used[a] || !usedBefore_[a]) places[a] = a;
+    if (used[a] || !usedBefore_[a]) slots[a] = a;
   }
   Index hole = 0;
   for (Index a = countBefore; a < count; ++a) {
-    while (hole < countBefore && places[hole]) ++hole;
+    while (hole < countBefore && slots[hole]) ++hole;
     if (hole < countBefore) {
-      places[hole] = a;
+      slots[hole] = a;
     } else {
-      places.emplace_back(a);
+      slots.emplace_back(a);
     }
   }
-  places.erase(std::remove(places.begin(), places.end(), std::nullopt), places.end());
-  if (places.size() == used.size() || !understood(document)) return;
+  slots.erase(std::remove(slots.begin(), slots.end(), std::nullopt), slots.end());
+  if (slots.size() == used.size() || !understood(document)) return;
 
   std::vector<gltf::Accessor> kept;
   std::vector<Index> newIndex(count, kNoIndex);
-  for (const std::optional<Index>& a : places) newIndex[*a] = addElement(kept, std::move(document.accessors[*a]));
+  for (const std::optional<Index>& a : slots) newIndex[*a] = addElement(kept, std::move(document.accessors[*a]));
   document.accessors = std::move(kept);
   changeReferences(document, [&](ElementKind kind, Index& number) {
     if (kind == ElementKind::kAccessor && number < count) number = newIndex[number];

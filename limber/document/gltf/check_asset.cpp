@@ -15,15 +15,15 @@ namespace {
 void checkNodes(const gltf::Document& document) {
   for (std::size_t i = 0; i < document.nodes.size(); ++i) {
     const gltf::Node& node = document.nodes[i];
-    const auto place = [&](const char* key) { return fmt::format("nodes[{}].{}", i, key); };
-    requireElement(node.mesh, document.meshes.size(), [&] { return place("mesh"); });
-    requireElement(node.skin, document.skins.size(), [&] { return place("skin"); });
-    requireElement(node.camera, document.cameras.size(), [&] { return place("camera"); });
+    const auto locationOf = [&](const char* key) { return fmt::format("nodes[{}].{}", i, key); };
+    requireElement(node.mesh, document.meshes.size(), [&] { return locationOf("mesh"); });
+    requireElement(node.skin, document.skins.size(), [&] { return locationOf("skin"); });
+    requireElement(node.camera, document.cameras.size(), [&] { return locationOf("camera"); });
     if (node.matrix && (node.translation || node.rotation || node.scale)) {
       failAt(fmt::format("nodes[{}]", i), "has both a matrix and a translation, rotation or scale");
     }
-    if (node.rotation && node.rotation->squaredNorm() < kLeastSquaredRotation) {
-      failAt(place("rotation"), "is zero, which is no rotation");
+    if (node.rotation && node.rotation->squaredNorm() < kMinSquaredRotation) {
+      failAt(locationOf("rotation"), "is zero, which is no rotation");
     }
   }
 }
@@ -34,10 +34,10 @@ std::vector<Index> checkParents(const std::vector<gltf::Node>& nodes) {
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     for (std::size_t c = 0; c < nodes[i].children.size(); ++c) {
       const Index child = nodes[i].children[c];
-      const auto place = [&] { return fmt::format("nodes[{}].children[{}]", i, c); };
-      requireElement(child, nodes.size(), place);
+      const auto location = [&] { return fmt::format("nodes[{}].children[{}]", i, c); };
+      requireElement(child, nodes.size(), location);
       if (parent[child] != kNoIndex) {
-        failAt(place(), fmt::format("is node {}, which is a child of node {} already", child, parent[child]));
+        failAt(location(), fmt::format("is node {}, which is a child of node {} already", child, parent[child]));
       }
       parent[child] = static_cast<Index>(i);
     }
@@ -68,10 +68,10 @@ void checkScenes(const gltf::Document& document, const std::vector<Index>& paren
   for (std::size_t s = 0; s < scenes.size(); ++s) {
     for (std::size_t i = 0; i < scenes[s].nodes.size(); ++i) {
       const Index node = scenes[s].nodes[i];
-      const auto place = [&] { return fmt::format("scenes[{}].nodes[{}]", s, i); };
-      requireElement(node, parent.size(), place);
-      if (parent[node] != kNoIndex) failAt(place(), fmt::format("is node {}, which is no root", node));
-      if (listedIn[node] == s) failAt(place(), fmt::format("is node {}, which the scene has already", node));
+      const auto location = [&] { return fmt::format("scenes[{}].nodes[{}]", s, i); };
+      requireElement(node, parent.size(), location);
+      if (parent[node] != kNoIndex) failAt(location(), fmt::format("is node {}, which is no root", node));
+      if (listedIn[node] == s) failAt(location(), fmt::format("is node {}, which the scene has already", node));
       listedIn[node] = s;
     }
   }
@@ -82,16 +82,16 @@ void checkAnimations(const gltf::Document& document) {
   for (std::size_t a = 0; a < document.animations.size(); ++a) {
     const gltf::Animation& animation = document.animations[a];
     for (std::size_t i = 0; i < animation.samplers.size(); ++i) {
-      const auto place = [&](const char* key) { return fmt::format("animations[{}].samplers[{}].{}", a, i, key); };
-      requireElement(animation.samplers[i].input, document.accessors.size(), [&] { return place("input"); });
-      requireElement(animation.samplers[i].output, document.accessors.size(), [&] { return place("output"); });
+      const auto locationOf = [&](const char* key) { return fmt::format("animations[{}].samplers[{}].{}", a, i, key); };
+      requireElement(animation.samplers[i].input, document.accessors.size(), [&] { return locationOf("input"); });
+      requireElement(animation.samplers[i].output, document.accessors.size(), [&] { return locationOf("output"); });
     }
     for (std::size_t i = 0; i < animation.channels.size(); ++i) {
       const gltf::AnimationChannel& channel = animation.channels[i];
-      const auto place = [&](const char* key) { return fmt::format("animations[{}].channels[{}].{}", a, i, key); };
-      requireElement(channel.sampler, animation.samplers.size(), [&] { return place("sampler"); });
-      requireElement(channel.target.node, document.nodes.size(), [&] { return place("target.node"); });
-      requireElement(channelTarget(channel).node, document.nodes.size(), [&] { return place("target"); });
+      const auto locationOf = [&](const char* key) { return fmt::format("animations[{}].channels[{}].{}", a, i, key); };
+      requireElement(channel.sampler, animation.samplers.size(), [&] { return locationOf("sampler"); });
+      requireElement(channel.target.node, document.nodes.size(), [&] { return locationOf("target.node"); });
+      requireElement(channelTarget(channel).node, document.nodes.size(), [&] { return locationOf("target"); });
     }
   }
 }

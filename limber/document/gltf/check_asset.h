@@ -5,7 +5,7 @@
 
 namespace limber {
 
-inline constexpr double kLeastSquaredRotation = 1e-12;  // of a node: a shorter quaternion is no rotation
+inline constexpr double kMinSquaredRotation = 1e-12;  // of a node: a shorter quaternion is no rotation
 
 // Every buffer view, every accessor, and the accessors that meshes and skins use: types, counts, values.
 void checkData(const Asset& asset);

@@ -76,9 +76,9 @@ class DataChecker {
     for (std::size_t m = 0; m < document_.meshes.size(); ++m) {
       const std::vector<gltf::Primitive>& primitives = document_.meshes[m].primitives;
       for (std::size_t p = 0; p < primitives.size(); ++p) {
-        const std::string place = fmt::format("meshes[{}].primitives[{}]", m, p);
-        checkPrimitive(primitives[p], place);
-        checkUnpackedSize(primitives[p], place);
+        const std::string location = fmt::format("meshes[{}].primitives[{}]", m, p);
+        checkPrimitive(primitives[p], location);
+        checkUnpackedSize(primitives[p], location);
       }
     }
     for (std::size_t i = 0; i < document_.skins.size(); ++i) checkSkin(document_.skins[i], fmt::format("skins[{}]", i));
@@ -145,10 +145,10 @@ class DataChecker {
 
   // Shapes that a primitive's attributes and its morph targets share. `tangent`: components of TANGENT, of which morph
   // targets leave out the handedness.
-  static void checkShape(std::string_view name, const AccessorInfo& info, Index tangent, const std::string& place) {
+  static void checkShape(std::string_view name, const AccessorInfo& info, Index tangent, const std::string& location) {
     const auto require = [&](Index least, Index most, std::string_view shape) {
       if (info.components >= least && info.components <= most && info.type != ComponentType::kU32) return;
-      failAt(place, fmt::format("must be of type {}, of floats or of integers of 8 or 16 bits", shape));
+      failAt(location, fmt::format("must be of type {}, of floats or of integers of 8 or 16 bits", shape));
     };
     if (name == "NORMAL") {
       require(3, 3, "VEC3");
@@ -159,42 +159,42 @@ class DataChecker {
     } else if (name.starts_with("COLOR_")) {
       require(3, 4, "VEC3 or VEC4");
     } else if (name == "POSITION" && (info.components != 3 || info.type == ComponentType::kU32)) {
-      failAt(place, "positions must be of type VEC3");
+      failAt(location, "positions must be of type VEC3");
     }
   }
 
-  static void checkInfluences(std::string_view name, const AccessorInfo& info, const std::string& place) {
+  static void checkInfluences(std::string_view name, const AccessorInfo& info, const std::string& location) {
     if (name.starts_with("JOINTS_")) {
-      if (info.components != 4 || !isUnsigned(info.type)) failAt(place, "joints must be four unsigned integers");
+      if (info.components != 4 || !isUnsigned(info.type)) failAt(location, "joints must be four unsigned integers");
     } else if (name.starts_with("WEIGHTS_")) {
       const bool fraction = info.type == ComponentType::kF32 || (isUnsigned(info.type) && info.normalized);
-      if (info.components != 4 || !fraction) failAt(place, "weights must be four floats or normalised integers");
+      if (info.components != 4 || !fraction) failAt(location, "weights must be four floats or normalised integers");
     }
   }
 
   // Counts of all of a primitive's attributes and morph targets, which must agree.
   Index checkAttributes(const gltf::Primitive& primitive, const std::string& where) {
     std::optional<Index> count;
-    const auto checked = [&](Index accessor, const std::string& place) -> const AccessorInfo& {
-      requireElement(accessor, layouts_.size(), [&] { return place; });
+    const auto checked = [&](Index accessor, const std::string& location) -> const AccessorInfo& {
+      requireElement(accessor, layouts_.size(), [&] { return location; });
       const AccessorInfo& info = layouts_[accessor].info;
       if (count.value_or(info.count) != info.count) {
-        failAt(place, fmt::format("has {} elements where other attributes have {}", info.count, *count));
+        failAt(location, fmt::format("has {} elements where other attributes have {}", info.count, *count));
       }
       count = info.count;
       return info;
     };
     for (const auto& [name, accessor] : primitive.attributes) {
-      const std::string place = fmt::format("{}.attributes.{}", where, shortened(name));
-      const AccessorInfo& info = checked(accessor, place);
-      checkShape(name, info, 4, place);
-      checkInfluences(name, info, place);
-      if (name == "POSITION") requireFinite(accessor, place);
+      const std::string location = fmt::format("{}.attributes.{}", where, shortened(name));
+      const AccessorInfo& info = checked(accessor, location);
+      checkShape(name, info, 4, location);
+      checkInfluences(name, info, location);
+      if (name == "POSITION") requireFinite(accessor, location);
     }
     for (std::size_t t = 0; t < primitive.targets.size(); ++t) {
       for (const auto& [name, accessor] : primitive.targets[t]) {
-        const std::string place = fmt::format("{}.targets[{}].{}", where, t, shortened(name));
-        checkShape(name, checked(accessor, place), 3, place);
+        const std::string location = fmt::format("{}.targets[{}].{}", where, t, shortened(name));
+        checkShape(name, checked(accessor, location), 3, location);
       }
     }
     return count.value_or(0);
@@ -205,12 +205,12 @@ class DataChecker {
     requireElement(primitive.material, document_.materials.size(), [&] { return where + ".material"; });
     requireElement(primitive.mode, gltf::kTriangleFan + 1, [&] { return where + ".mode"; });
     if (!primitive.indices) return;
-    const auto place = [&] { return where + ".indices"; };
-    requireElement(primitive.indices, layouts_.size(), place);
+    const auto location = [&] { return where + ".indices"; };
+    requireElement(primitive.indices, layouts_.size(), location);
     const AccessorInfo& info = layouts_[*primitive.indices].info;
-    if (info.components != 1 || !isUnsigned(info.type)) failAt(place(), "indices must be unsigned integers");
+    if (info.components != 1 || !isUnsigned(info.type)) failAt(location(), "indices must be unsigned integers");
     if (info.count > 0 && largestOf(*primitive.indices) >= vertexCount) {
-      failAt(place(), fmt::format("index {} is beyond the {} vertices", largestOf(*primitive.indices), vertexCount));
+      failAt(location(), fmt::format("index {} is beyond the {} vertices", largestOf(*primitive.indices), vertexCount));
     }
   }
 
@@ -227,14 +227,14 @@ class DataChecker {
     requireElement(skin.skeleton, document_.nodes.size(), [&] { return where + ".skeleton"; });
 
     if (!skin.inverseBindMatrices) return;
-    const std::string place = where + ".inverseBindMatrices";
-    requireElement(skin.inverseBindMatrices, layouts_.size(), [&] { return place; });
+    const std::string location = where + ".inverseBindMatrices";
+    requireElement(skin.inverseBindMatrices, layouts_.size(), [&] { return location; });
     const AccessorInfo& info = layouts_[*skin.inverseBindMatrices].info;
-    if (info.components != 16 || info.type != ComponentType::kF32) failAt(place, "must be matrices of floats");
+    if (info.components != 16 || info.type != ComponentType::kF32) failAt(location, "must be matrices of floats");
     if (info.count < skin.joints.size()) {
-      failAt(place, fmt::format("has {} matrices for {} joints", info.count, skin.joints.size()));
+      failAt(location, fmt::format("has {} matrices for {} joints", info.count, skin.joints.size()));
     }
-    requireFinite(*skin.inverseBindMatrices, place);
+    requireFinite(*skin.inverseBindMatrices, location);
   }
 
   // The largest joint number that a primitive's vertices name.
@@ -290,17 +290,18 @@ class DataChecker {
     const std::string where = fmt::format("nodes[{}]", index);
     std::optional<Index> count;
     for (const auto& [name, accessor] : instancingOf(node, where)) {
-      const std::string place = fmt::format("{}.extensions.{}.attributes.{}", where, kInstancingName, shortened(name));
-      requireElement(accessor, layouts_.size(), [&] { return place; });
+      const std::string location =
+          fmt::format("{}.extensions.{}.attributes.{}", where, kInstancingName, shortened(name));
+      requireElement(accessor, layouts_.size(), [&] { return location; });
       const AccessorInfo& info = layouts_[accessor].info;
       const bool rotation = name == "ROTATION";
       if (!rotation && name != "TRANSLATION" && name != "SCALE") continue;
       if (info.components != (rotation ? 4u : 3u)) {
-        failAt(place, fmt::format("must be of type {}", rotation ? "VEC4" : "VEC3"));
+        failAt(location, fmt::format("must be of type {}", rotation ? "VEC4" : "VEC3"));
       }
       if (!count) count = info.count;
       if (info.count != *count) {
-        failAt(place, fmt::format("has {} elements where other attributes have {}", info.count, *count));
+        failAt(location, fmt::format("has {} elements where other attributes have {}", info.count, *count));
       }
     }
   }

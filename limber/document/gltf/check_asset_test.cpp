@@ -18,7 +18,7 @@ using testing::GltfBuilder;
 using ::testing::HasSubstr;
 
 // Where checkAsset finds something wrong once the JSON pointer's value is replaced; empty if nowhere.
-std::string placeOfFault(const GltfBuilder& model) {
+std::string faultLocation(const GltfBuilder& model) {
   try {
     readAsset(model.glb(), "m");
   } catch (const Error& error) {
@@ -31,11 +31,11 @@ std::string placeOfFault(const GltfBuilder& model) {
 std::string faultWith(const char* pointer, const Json& value) {
   GltfBuilder model = everythingModel();
   model.json[Json::json_pointer(pointer)] = value;
-  return placeOfFault(model);
+  return faultLocation(model);
 }
 
 TEST(CheckAsset, AcceptsAGoodModel) {
-  EXPECT_EQ(placeOfFault(everythingModel()), "");
+  EXPECT_EQ(faultLocation(everythingModel()), "");
 }
 
 // Each index of the document, set to one beyond the last element.
@@ -67,13 +67,13 @@ TEST(CheckAsset, EveryIndexMustBeInRange) {
       {"/accessors/0/bufferView", "accessors[0].bufferView"},
       {"/accessors/8/sparse/indices/bufferView", "accessors[8].sparse.indices.bufferView"},
       {"/bufferViews/0/buffer", "bufferViews[0].buffer"}};
-  for (const auto& [pointer, place] : kIndices) {
-    EXPECT_EQ(faultWith(pointer, 100), place);
-    EXPECT_EQ(faultWith(pointer, -1), place);
-    EXPECT_EQ(faultWith(pointer, 1.5), place);
-    EXPECT_EQ(faultWith(pointer, "0"), place);
-    EXPECT_EQ(faultWith(pointer, nullptr), place);
-    EXPECT_EQ(faultWith(pointer, 18446744073709551615u), place);
+  for (const auto& [pointer, location] : kIndices) {
+    EXPECT_EQ(faultWith(pointer, 100), location);
+    EXPECT_EQ(faultWith(pointer, -1), location);
+    EXPECT_EQ(faultWith(pointer, 1.5), location);
+    EXPECT_EQ(faultWith(pointer, "0"), location);
+    EXPECT_EQ(faultWith(pointer, nullptr), location);
+    EXPECT_EQ(faultWith(pointer, 18446744073709551615u), location);
   }
 }
 
@@ -110,15 +110,15 @@ TEST(CheckAsset, SparseSubstitutionsMustFit) {
   GltfBuilder descending = everythingModel();
   const Index view = descending.view<std::uint8_t>({3, 1});
   descending.json["accessors"][8]["sparse"]["indices"]["bufferView"] = view;
-  EXPECT_EQ(placeOfFault(descending), "accessors[8].sparse.indices");
+  EXPECT_EQ(faultLocation(descending), "accessors[8].sparse.indices");
 }
 
 TEST(CheckAsset, ZerosWithoutDataAreBoundedByTheFile) {
   GltfBuilder model = everythingModel();
   const Index index = model.push("accessors", {{"componentType", 5126}, {"count", 4000000000u}, {"type", "MAT4"}});
-  EXPECT_EQ(placeOfFault(model), "accessors[" + std::to_string(index) + "]");
+  EXPECT_EQ(faultLocation(model), "accessors[" + std::to_string(index) + "]");
   model.json["accessors"][index]["count"] = 4096;
-  EXPECT_EQ(placeOfFault(model), "");
+  EXPECT_EQ(faultLocation(model), "");
 }
 
 TEST(CheckAsset, NodesFormATree) {
@@ -134,7 +134,7 @@ TEST(CheckAsset, ALongChainOfNodesIsNoProblem) {
   GltfBuilder model;
   for (int i = 1; i < 20000; ++i) model.push("nodes", {{"children", {i}}});
   model.push("nodes", Json::object());
-  EXPECT_EQ(placeOfFault(model), "");
+  EXPECT_EQ(faultLocation(model), "");
 }
 
 TEST(CheckAsset, TransformsAreFiniteAndWellFormed) {
@@ -161,7 +161,7 @@ TEST(CheckAsset, PrimitivesAreConsistent) {
   EXPECT_EQ(faultWith("/meshes/0/primitives/0/attributes", nullptr), "meshes[0].primitives[0].attributes");
   GltfBuilder beyond = everythingModel();
   beyond.json["meshes"][0]["primitives"][0]["indices"] = beyond.accessor<std::uint16_t>({0, 1, 4}, 5123, "SCALAR", 3);
-  EXPECT_EQ(placeOfFault(beyond), "meshes[0].primitives[0].indices");
+  EXPECT_EQ(faultLocation(beyond), "meshes[0].primitives[0].indices");
 }
 
 // Whether a primitive with this attribute, of four elements, is refused at its place.
@@ -170,8 +170,9 @@ void expectShape(const std::string& name, const char* type, int componentType, b
   const Index accessor = model.accessor(std::vector<float>(16), componentType, type, 4);
   Json& primitive = model.json["meshes"][0]["primitives"][0];
   (target ? primitive["targets"][0] : primitive["attributes"])[name] = accessor;
-  const std::string place = target ? "targets[0]." : "attributes.";
-  EXPECT_EQ(placeOfFault(model), good ? "" : "meshes[0].primitives[0]." + place + name) << type << " " << componentType;
+  const std::string location = target ? "targets[0]." : "attributes.";
+  EXPECT_EQ(faultLocation(model), good ? "" : "meshes[0].primitives[0]." + location + name)
+      << type << " " << componentType;
 }
 
 TEST(CheckAsset, AttributesHaveTheirShapes) {
@@ -193,13 +194,13 @@ TEST(CheckAsset, AttributesHaveTheirShapes) {
 
 TEST(CheckAsset, BaseColoursAreFourNumbers) {
   const char* const kPointer = "/materials/0/pbrMetallicRoughness/baseColorFactor";
-  const std::string place = "materials[0].pbrMetallicRoughness.baseColorFactor";
+  const std::string location = "materials[0].pbrMetallicRoughness.baseColorFactor";
   EXPECT_EQ(faultWith(kPointer, {1, 0.5, 0, 1}), "");
-  EXPECT_EQ(faultWith(kPointer, {1, 0.5, 0}), place);
-  EXPECT_EQ(faultWith(kPointer, {1, 0.5, 0, 1, 1}), place);
-  EXPECT_EQ(faultWith(kPointer, "red"), place);
-  EXPECT_EQ(faultWith(kPointer, {1, 0.5, 0, "x"}), place + "[3]");
-  EXPECT_EQ(faultWith(kPointer, {1, 0.5, 1e300, 1}), place + "[2]");
+  EXPECT_EQ(faultWith(kPointer, {1, 0.5, 0}), location);
+  EXPECT_EQ(faultWith(kPointer, {1, 0.5, 0, 1, 1}), location);
+  EXPECT_EQ(faultWith(kPointer, "red"), location);
+  EXPECT_EQ(faultWith(kPointer, {1, 0.5, 0, "x"}), location + "[3]");
+  EXPECT_EQ(faultWith(kPointer, {1, 0.5, 1e300, 1}), location + "[2]");
 }
 
 TEST(CheckAsset, GpuInstancesHaveTheirShapes) {
@@ -210,13 +211,13 @@ TEST(CheckAsset, GpuInstancesHaveTheirShapes) {
   const Index vec3 = add("VEC3", 2), vec4 = add("VEC4", 2), longer = add("VEC3", 3);
   Json& attributes = good.json["nodes"][3]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
   attributes = {{"TRANSLATION", vec3}, {"ROTATION", vec4}, {"SCALE", vec3}, {"_ID", longer}};
-  EXPECT_EQ(placeOfFault(good), "");
+  EXPECT_EQ(faultLocation(good), "");
 
   const std::string instancing = "nodes[3].extensions.EXT_mesh_gpu_instancing.attributes";
   const auto faultOf = [&](const char* name, const Json& value) {
     GltfBuilder changed = good;
     changed.json["nodes"][3]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"][name] = value;
-    return placeOfFault(changed);
+    return faultLocation(changed);
   };
   EXPECT_EQ(faultOf("TRANSLATION", vec4), instancing + ".TRANSLATION");
   EXPECT_EQ(faultOf("ROTATION", vec3), instancing + ".ROTATION");
@@ -225,7 +226,7 @@ TEST(CheckAsset, GpuInstancesHaveTheirShapes) {
   EXPECT_EQ(faultOf("SCALE", "x"), instancing + ".SCALE");
   EXPECT_NE(faultOf("SCALE", longer), "");  // which of the two is named follows from the members' order
   attributes = Json::array({vec3});
-  EXPECT_EQ(placeOfFault(good), instancing);
+  EXPECT_EQ(faultLocation(good), instancing);
 }
 
 void setFloat(GltfBuilder& model, Index accessor, std::size_t byte, float value) {
@@ -240,13 +241,13 @@ TEST(CheckAsset, PositionsAndBindMatricesAreFinite) {
     GltfBuilder position = everythingModel(), normal = everythingModel(), bind = everythingModel(),
                 weight = everythingModel();
     setFloat(position, 0, 3 * 24 + 8, bad);
-    EXPECT_EQ(placeOfFault(position), "meshes[0].primitives[0].attributes.POSITION");
+    EXPECT_EQ(faultLocation(position), "meshes[0].primitives[0].attributes.POSITION");
     setFloat(normal, 0, 3 * 24 + 12, bad);
-    EXPECT_EQ(placeOfFault(normal), "");
+    EXPECT_EQ(faultLocation(normal), "");
     setFloat(bind, 5, 127 - 3, bad);
-    EXPECT_EQ(placeOfFault(bind), "skins[0].inverseBindMatrices");
+    EXPECT_EQ(faultLocation(bind), "skins[0].inverseBindMatrices");
     setFloat(weight, 4, 0, bad);
-    EXPECT_EQ(placeOfFault(weight), "");  // repaired where weights are used
+    EXPECT_EQ(faultLocation(weight), "");  // repaired where weights are used
   }
 }
 
@@ -259,7 +260,7 @@ TEST(CheckAsset, SkinsFitTheirMeshes) {
   GltfBuilder unused = everythingModel();
   unused.json["meshes"][0]["primitives"][0]["attributes"]["JOINTS_0"] = unused.accessor<std::uint8_t>(
       {0, 0, 99, 0, 0, 1, 0, 0, 0, 1, 0, 77, 1, 0, 0, 0}, 5121, "VEC4", 4);  // 99 and 77 have weight 0
-  EXPECT_EQ(placeOfFault(unused), "");
+  EXPECT_EQ(faultLocation(unused), "");
 }
 
 TEST(CheckAsset, BuffersInMemoryMustMatchTheDocument) {
@@ -286,16 +287,16 @@ std::string refusalOfShared(std::size_t vertices, std::size_t sets, std::size_t 
   GltfBuilder model;
   const std::vector<float> positions(3 * vertices);
   const std::vector<std::uint8_t> joints(4 * vertices);
-  const Index place = model.accessor(positions, 5126, "VEC3", vertices);
-  model.json["accessors"][place].update({{"min", Json::array({0, 0, 0})}, {"max", Json::array({0, 0, 0})}});
+  const Index location = model.accessor(positions, 5126, "VEC3", vertices);
+  model.json["accessors"][location].update({{"min", Json::array({0, 0, 0})}, {"max", Json::array({0, 0, 0})}});
   const Index joint = model.accessor(joints, 5121, "VEC4", vertices);
   const Index weight = model.accessor(std::vector<float>(4 * vertices), 5126, "VEC4", vertices);
-  Json primitive = {{"attributes", {{"POSITION", place}}}};
+  Json primitive = {{"attributes", {{"POSITION", location}}}};
   for (std::size_t n = 0; n < sets; ++n) {
     primitive["attributes"][fmt::format("JOINTS_{}", n)] = joint;
     primitive["attributes"][fmt::format("WEIGHTS_{}", n)] = weight;
   }
-  for (std::size_t t = 0; t < targets; ++t) primitive["targets"].push_back({{"POSITION", place}});
+  for (std::size_t t = 0; t < targets; ++t) primitive["targets"].push_back({{"POSITION", location}});
   model.push("meshes", {{"primitives", Json::array({primitive})}});
   model.push("nodes", {{"mesh", 0}});
   return limitOf(model);
@@ -311,10 +312,10 @@ TEST(CheckAsset, MemoryIsBoundedByWhatTheFileStores) {
 TEST(CheckAsset, IndicesCountAsOftenAsTheyAreNamed) {
   const auto refusalOf = [](int primitives) -> std::string {
     GltfBuilder model;
-    const Index place = model.accessor(std::vector<float>(9), 5126, "VEC3", 3);
-    model.json["accessors"][place].update({{"min", Json::array({0, 0, 0})}, {"max", Json::array({0, 0, 0})}});
+    const Index location = model.accessor(std::vector<float>(9), 5126, "VEC3", 3);
+    model.json["accessors"][location].update({{"min", Json::array({0, 0, 0})}, {"max", Json::array({0, 0, 0})}});
     const Index indices = model.accessor(std::vector<std::uint8_t>(300'000), 5121, "SCALAR", 300'000);
-    const Json primitive = {{"attributes", {{"POSITION", place}}}, {"indices", indices}};
+    const Json primitive = {{"attributes", {{"POSITION", location}}}, {"indices", indices}};
     model.push("meshes", {{"primitives", std::vector<Json>(static_cast<std::size_t>(primitives), primitive)}});
     model.push("nodes", {{"mesh", 0}});
     return limitOf(model);
@@ -324,10 +325,10 @@ TEST(CheckAsset, IndicesCountAsOftenAsTheyAreNamed) {
 }
 
 TEST(CheckAsset, EmptyDocumentsAreFine) {
-  EXPECT_EQ(placeOfFault(GltfBuilder()), "");
+  EXPECT_EQ(faultLocation(GltfBuilder()), "");
   GltfBuilder empty;
   for (const char* section : {"nodes", "meshes", "accessors", "buffers", "scenes"}) empty.json[section] = Json::array();
-  EXPECT_EQ(placeOfFault(empty), "");
+  EXPECT_EQ(faultLocation(empty), "");
 }
 
 }  // namespace

@@ -12,20 +12,20 @@
 
 namespace limber {
 
-[[noreturn]] inline void failAt(std::string place, std::string message) {
-  throw Error(ErrorCode::kBadData, std::move(message), std::move(place));
+[[noreturn]] inline void failAt(std::string location, std::string message) {
+  throw Error(ErrorCode::kBadData, std::move(message), std::move(location));
 }
 
-inline std::string accessorPlace(Index accessor) {
+inline std::string accessorLocation(Index accessor) {
   return fmt::format("accessors[{}]", accessor);
 }
 
 // Fails unless the number, if there is one, is one of `count` elements. `place()` makes the path of what refers to it.
-template <typename Place>
-void requireElement(std::optional<Index> number, std::size_t count, const Place& place) {
+template <typename Location>
+void requireElement(std::optional<Index> number, std::size_t count, const Location& location) {
   if (!number || *number < count) return;
-  failAt(place(), count == 0 ? fmt::format("is {}, but there is no such element", *number)
-                             : fmt::format("is {}, but the last one is {}", *number, count - 1));
+  failAt(location(), count == 0 ? fmt::format("is {}, but there is no such element", *number)
+                                : fmt::format("is {}, but the last one is {}", *number, count - 1));
 }
 
 }  // namespace limber

@@ -54,10 +54,10 @@ void undeclareExtension(gltf::Document& document, std::string_view name) {
   std::erase(document.extensionsRequired, name);
 }
 
-gltf::Attributes instancingOf(const gltf::Node& node, std::string_view place) {
+gltf::Attributes instancingOf(const gltf::Node& node, std::string_view location) {
   const Json* content = extensionOf(node, kInstancingName);
   if (content == nullptr) return {};
-  const std::string path = std::string(place) + ".extensions." + kInstancingName;
+  const std::string path = std::string(location) + ".extensions." + kInstancingName;
   std::vector<std::pair<std::string, Index>> list;
   JsonView(content, path).object("attributes").forEachMember([&](std::string_view name, const JsonView& accessor) {
     list.emplace_back(name, accessor.asIndex(kNoIndex));

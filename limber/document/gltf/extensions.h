@@ -30,7 +30,7 @@ void undeclareExtension(gltf::Document& document, std::string_view name);
 
 // The accessors of a node's EXT_mesh_gpu_instancing ("TRANSLATION", "ROTATION", "SCALE"); none where it does not use
 // it. Throws Error kBadData below `place` ("nodes[3]") where they are no numbers.
-gltf::Attributes instancingOf(const gltf::Node& node, std::string_view place);
+gltf::Attributes instancingOf(const gltf::Node& node, std::string_view location);
 
 // The pointer of a target with KHR_animation_pointer ("/nodes/12/rotation"); null where it has none.
 const std::string* animationPointer(const gltf::AnimationChannel::Target& target);

@@ -23,9 +23,9 @@ namespace limber {
 namespace {
 
 // A buffer that only stands for what compressed buffer views decode to has no bytes of its own to load.
-bool isCompressionFallback(const gltf::Buffer& buffer, const std::string& place) {
+bool isCompressionFallback(const gltf::Buffer& buffer, const std::string& location) {
   const auto isFallback = [&](const char* name) {
-    const std::string path = place + ".extensions." + name;
+    const std::string path = location + ".extensions." + name;
     return JsonView(extensionOf(buffer, name), path).flag("fallback", false);
   };
   return isFallback("EXT_meshopt_compression") || isFallback("KHR_meshopt_compression");
@@ -36,20 +36,20 @@ class FilesBeside {
  public:
   explicit FilesBeside(const Resolver& resolver) : resolver_(resolver) {}
 
-  Bytes read(std::string_view uri, const std::string& place) {
+  Bytes read(std::string_view uri, const std::string& location) {
     const std::string path = localPath(uri);
     std::size_t& size = sizes_[std::filesystem::path(path).lexically_normal().generic_string()];
     if (size > 0 && repeated_ + size > kMaxRepeated) {
       throw Error(ErrorCode::kLimit,
                   fmt::format("its file \"{}\" was named before, and files named again come to more than {} MB",
                               shortened(path), kMaxRepeated >> 20),
-                  place, "name each file once");
+                  location, "name each file once");
     }
     repeated_ += size;
     std::optional<Bytes> bytes;
     if (resolver_) bytes = resolver_(path);
     if (!bytes) {
-      throw Error(ErrorCode::kFile, fmt::format("its file \"{}\" is not there", shortened(path)), place,
+      throw Error(ErrorCode::kFile, fmt::format("its file \"{}\" is not there", shortened(path)), location,
                   "put it beside the model, or use a GLB");
     }
     size = bytes->size();
@@ -64,7 +64,7 @@ class FilesBeside {
   std::size_t repeated_ = 0;                  // bytes
 };
 
-Asset::Buffer loadBuffer(const gltf::Buffer& buffer, const std::string& place, std::optional<ByteSpan> binary,
+Asset::Buffer loadBuffer(const gltf::Buffer& buffer, const std::string& location, std::optional<ByteSpan> binary,
                          FilesBeside& files) {
   Asset::Buffer loaded;
   const std::size_t length = buffer.byteLength;
@@ -72,15 +72,15 @@ Asset::Buffer loadBuffer(const gltf::Buffer& buffer, const std::string& place, s
     DataUri data = decodeDataUri(buffer.uri);
     loaded = {std::move(data.bytes), std::move(data.header)};
   } else if (!buffer.uri.empty()) {
-    loaded = {files.read(buffer.uri, place), buffer.uri};
+    loaded = {files.read(buffer.uri, location), buffer.uri};
   } else if (binary) {
     // The chunk is padded to four bytes; the buffer is not.
     loaded.bytes.assign(binary->begin(), binary->begin() + std::min(length, binary->size()));
   } else if (length > 0) {
-    failAt(place, "has neither a file nor a binary chunk");
+    failAt(location, "has neither a file nor a binary chunk");
   }
   if (loaded.bytes.size() < length) {
-    failAt(place, fmt::format("should have {} bytes and has {}", length, loaded.bytes.size()));
+    failAt(location, fmt::format("should have {} bytes and has {}", length, loaded.bytes.size()));
   }
   return loaded;
 }
@@ -88,23 +88,23 @@ Asset::Buffer loadBuffer(const gltf::Buffer& buffer, const std::string& place, s
 void loadBuffers(Asset& asset, std::optional<ByteSpan> binary, FilesBeside& files) {
   for (std::size_t i = 0; i < asset.document.buffers.size(); ++i) {
     gltf::Buffer& buffer = asset.document.buffers[i];
-    const std::string place = fmt::format("buffers[{}]", i);
-    if (isCompressionFallback(buffer, place)) {
+    const std::string location = fmt::format("buffers[{}]", i);
+    if (isCompressionFallback(buffer, location)) {
       asset.buffers.push_back({{}, buffer.uri});
       continue;
     }
     try {
       // Only the first buffer may be the binary chunk.
-      asset.buffers.push_back(loadBuffer(buffer, place, i == 0 ? binary : std::nullopt, files));
+      asset.buffers.push_back(loadBuffer(buffer, location, i == 0 ? binary : std::nullopt, files));
     } catch (const Error& error) {
-      throw error.where().empty() ? error.within(place) : error;
+      throw error.where().empty() ? error.within(location) : error;
     }
     buffer.uri = asset.buffers.back().uri;  // of a data URI its start, from here on
 
     // What the document does not speak of is not kept: a buffer's bytes are as many as it says.
     Bytes& bytes = asset.buffers.back().bytes;
     if (bytes.size() <= buffer.byteLength) continue;
-    asset.warnings.add("trailing-bytes", "bytes behind the end of a buffer left out", place,
+    asset.warnings.add("trailing-bytes", "bytes behind the end of a buffer left out", location,
                        bytes.size() - buffer.byteLength);
     bytes.resize(buffer.byteLength);
   }
@@ -116,12 +116,13 @@ void loadImages(Asset& asset, FilesBeside& files) {
   for (std::size_t i = 0; i < asset.document.images.size(); ++i) {
     const std::string& uri = asset.document.images[i].uri;
     if (uri.empty() || isDataUri(uri)) continue;
-    const std::string place = fmt::format("images[{}]", i);
+    const std::string location = fmt::format("images[{}]", i);
     const auto [met, isNew] = problems.try_emplace(uri);
     if (isNew) {
       try {
-        Bytes bytes = files.read(uri, place);
-        if (imageFormat(bytes).mediaType.empty()) failAt(place, fmt::format("\"{}\" is not an image", shortened(uri)));
+        Bytes bytes = files.read(uri, location);
+        if (imageFormat(bytes).mediaType.empty())
+          failAt(location, fmt::format("\"{}\" is not an image", shortened(uri)));
         asset.sideFiles.push_back({uri, std::move(bytes)});
       } catch (const Error& error) {
         met->second = error.message();
@@ -129,17 +130,17 @@ void loadImages(Asset& asset, FilesBeside& files) {
     }
     if (met->second.empty()) continue;
     asset.warnings.add("missing-images", "images could not be read; the references to them stay (" + met->second + ")",
-                       place);
+                       location);
   }
 }
 
 // parseJson; what its errors quote of the text is cut.
 Json parseDocument(std::string_view text, Warnings& warnings) {
-  constexpr std::size_t kMost = 200;
+  constexpr std::size_t kMax = 200;
   try {
     return parseJson(text, warnings);
   } catch (const Error& error) {
-    throw Error(error.code(), shortened(error.message(), kMost), error.where(), error.remedy());
+    throw Error(error.code(), shortened(error.message(), kMax), error.where(), error.remedy());
   }
 }
 

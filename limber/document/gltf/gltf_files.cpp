@@ -25,8 +25,8 @@ bool sameBytes(ByteSpan a, ByteSpan b) {
 // Hands out the names of files in the document's folder.
 class Names {
  public:
-  explicit Names(const fs::path& place) : folder_(place.parent_path()), stem_(place.stem().string()) {
-    taken_[place.filename()] = std::nullopt;
+  explicit Names(const fs::path& location) : folder_(location.parent_path()), stem_(location.stem().string()) {
+    taken_[location.filename()] = std::nullopt;
   }
 
   // A name for bytes that have none.
@@ -76,7 +76,7 @@ class Names {
 };
 
 // The URI under which bytes that had `uri` are written.
-std::string placeBytes(Names& names, const std::string& uri, ByteSpan bytes) {
+std::string addFile(Names& names, const std::string& uri, ByteSpan bytes) {
   if (uri.empty()) return percentEncode(names.fresh(bytes).generic_string());
   const std::string wanted = localPath(uri);
   const std::string path = names.like(wanted, bytes).generic_string();
@@ -85,17 +85,17 @@ std::string placeBytes(Names& names, const std::string& uri, ByteSpan bytes) {
 
 }  // namespace
 
-GltfFiles gltfFiles(const Asset& asset, const fs::path& place) {
+GltfFiles gltfFiles(const Asset& asset, const fs::path& location) {
   gltf::Document document = asset.document;
-  Names names(place);
+  Names names(location);
   for (std::size_t i = 0; i < asset.buffers.size(); ++i) {
     const auto& [bytes, uri] = asset.buffers[i];
     const bool inside = isDataUri(uri) || bytes.empty();
     const std::string header = uri.empty() ? "data:application/octet-stream;base64," : uri;
-    document.buffers[i].uri = inside ? header + encodeBase64(bytes) : placeBytes(names, uri, bytes);
+    document.buffers[i].uri = inside ? header + encodeBase64(bytes) : addFile(names, uri, bytes);
   }
   std::map<std::string_view, std::string> imageUri;
-  for (const Asset::SideFile& file : asset.sideFiles) imageUri[file.uri] = placeBytes(names, file.uri, file.bytes);
+  for (const Asset::SideFile& file : asset.sideFiles) imageUri[file.uri] = addFile(names, file.uri, file.bytes);
   for (gltf::Image& image : document.images) {
     const auto written = imageUri.find(image.uri);
     if (written != imageUri.end()) image.uri = written->second;

@@ -218,8 +218,8 @@ TEST(GltfJson, MembersHaveTheirValues) {
 }
 
 struct Change {
-  const char* place;  // of the only member that is another one then
-  const char* value;  // empty: it leaves
+  const char* location;  // of the only member that is another one then
+  const char* value;     // empty: it leaves
   void (*edit)(Document& document);
 };
 
@@ -227,13 +227,13 @@ void expectOnly(const Json& before, const Change& change) {
   Document document = documentOf(before);
   change.edit(document);
   Json expected = before;
-  const Json::json_pointer place(change.place);
+  const Json::json_pointer location(change.location);
   if (*change.value != '\0') {
-    expected[place] = parsed(change.value);
+    expected[location] = parsed(change.value);
   } else {
-    expected[place.parent_pointer()].erase(place.back());
+    expected[location.parent_pointer()].erase(location.back());
   }
-  EXPECT_EQ(textOf(jsonOf(document)), textOf(expected)) << change.place;
+  EXPECT_EQ(textOf(jsonOf(document)), textOf(expected)) << change.location;
 }
 
 TEST(GltfJson, AChangedMemberChangesNothingElse) {
@@ -404,11 +404,11 @@ TEST(GltfJson, WrongTypesInToleratedMembersStayUntouched) {
                                                           {"/materials/0/doubleSided", "1"},
                                                           {"/materials/0/pbrMetallicRoughness/metallicFactor", "{}"},
                                                           {"/materials/0/pbrMetallicRoughness/roughnessFactor", "[1]"}};
-  for (const auto& [place, wrong] : kMembers) {
+  for (const auto& [location, wrong] : kMembers) {
     for (const char* value : {wrong, "null", "{\"a\":[1]}", "[null]"}) {
       Json json = parsed(kEverything);
-      json[Json::json_pointer(place)] = parsed(value);
-      EXPECT_EQ(again(json), textOf(json)) << place << " " << value;
+      json[Json::json_pointer(location)] = parsed(value);
+      EXPECT_EQ(again(json), textOf(json)) << location << " " << value;
     }
   }
 }
@@ -420,20 +420,20 @@ TEST(GltfJson, AnyValueAnywhereIsAnErrorOrComesBackToTheByte) {
   std::size_t errors = 0, documents = 0;
   const Json flat = json.flatten();
   for (const auto& [leaf, ignored] : flat.items()) {
-    for (Json::json_pointer place(leaf); !place.empty(); place.pop_back()) {
+    for (Json::json_pointer location(leaf); !location.empty(); location.pop_back()) {
       for (const Json& value : values) {
         Json changed = json;
-        changed[place] = value;
+        changed[location] = value;
         try {
           const Document document = documentOf(changed);
           ++documents;
-          EXPECT_EQ(textOf(jsonOf(document)), textOf(changed)) << place << " " << value;
+          EXPECT_EQ(textOf(jsonOf(document)), textOf(changed)) << location << " " << value;
         } catch (const Error& error) {
           ++errors;
           EXPECT_NE(error.where() + error.message(), "");
         }
       }
-      if (place.back() != "0") break;  // what it lies in once, by its first element
+      if (location.back() != "0") break;  // what it lies in once, by its first element
     }
   }
   EXPECT_GT(errors, 1000u);
@@ -463,7 +463,7 @@ Error errorOf(const Json& json) {
 
 TEST(GltfJson, ErrorsSayWhere) {
   struct Case {
-    const char* place;
+    const char* location;
     const char* value;  // empty: taken out
     const char* message;
   };
@@ -514,22 +514,22 @@ TEST(GltfJson, ErrorsSayWhere) {
       {"/extensionsUsed/0", "5", "must be a string"}};
   for (const Case& wrong : kCases) {
     Json json = parsed(kEverything);
-    const Json::json_pointer place(wrong.place);
+    const Json::json_pointer location(wrong.location);
     if (*wrong.value != '\0') {
-      json[place] = parsed(wrong.value);
+      json[location] = parsed(wrong.value);
     } else {
-      json[place.parent_pointer()].erase(place.back());
+      json[location.parent_pointer()].erase(location.back());
     }
     // "/nodes/0/mesh" -> "nodes[0].mesh".
     std::string path;
-    for (Json::json_pointer rest = place; !rest.empty(); rest.pop_back()) {
+    for (Json::json_pointer rest = location; !rest.empty(); rest.pop_back()) {
       const bool isNumber = rest.back().find_first_not_of("0123456789") == std::string::npos;
       path = (isNumber ? "[" + rest.back() + "]" : "." + rest.back()) + path;
     }
     const Error error = errorOf(json);
-    EXPECT_EQ(error.code(), ErrorCode::kBadData) << wrong.place;
+    EXPECT_EQ(error.code(), ErrorCode::kBadData) << wrong.location;
     EXPECT_EQ(error.where(), path.substr(1));
-    EXPECT_EQ(error.message(), wrong.message) << wrong.place;
+    EXPECT_EQ(error.message(), wrong.message) << wrong.location;
   }
 }
 

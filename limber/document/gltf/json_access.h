@@ -24,7 +24,7 @@ class JsonView {
  public:
   explicit JsonView(const Json& root) : value_(&root) {}
   // A value that stands at `place` of a larger one; null: absent. `place` must live as long.
-  JsonView(const Json* value, std::string_view place) : value_(value), steps_{Step{place}}, depth_(1) {}
+  JsonView(const Json* value, std::string_view location) : value_(value), steps_{Step{location}}, depth_(1) {}
 
   bool exists() const { return value_ != nullptr; }
   const Json& json() const { return *value_; }  // only where exists()

@@ -33,9 +33,9 @@ Assimp::IOStream* ImportIo::Open(const char* path, const char*) {
   if (!bytes && !missingFile_) missingFile_ = path;
   if (bytes && lowerExtension(path) == ".mtl") {
     movedTextures_ += countMovedMtlTextures(*bytes);
-    const std::string place(path);
-    const std::size_t slash = place.find_last_of("/\\");
-    const std::string folder = slash == place.npos ? "" : place.substr(0, slash + 1);
+    const std::string location(path);
+    const std::size_t slash = location.find_last_of("/\\");
+    const std::string folder = slash == location.npos ? "" : location.substr(0, slash + 1);
     const bool isKnown = std::find(materialFolders_.begin(), materialFolders_.end(), folder) != materialFolders_.end();
     if (!folder.empty() && !isKnown) materialFolders_.push_back(folder);
   }

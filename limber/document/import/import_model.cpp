@@ -184,10 +184,10 @@ void restoreObjColors(aiScene& scene, const ObjText& obj, ObjNumbers numbers) {
 // `colors` (r, g, b, a of each vertex of a file) as glTF has them. Files have them as sRGB; where any is above 1 they
 // are bytes. Vertices without one are white.
 void convertColors(std::span<const std::span<float, 4>> colors) {
-  float most = 0, mostAlpha = 0;
+  float most = 0, maxAlpha = 0;
   for (const std::span<float, 4> c : colors) {
     for (const float x : c.first<3>()) most = x > most ? x : most;
-    mostAlpha = c[3] > mostAlpha ? c[3] : mostAlpha;
+    maxAlpha = c[3] > maxAlpha ? c[3] : maxAlpha;
   }
   const auto unit = [](float x, float largest) {
     if (!std::isfinite(x)) return 1.0;
@@ -195,7 +195,7 @@ void convertColors(std::span<const std::span<float, 4>> colors) {
   };
   for (const std::span<float, 4> c : colors) {
     for (float& x : c.first<3>()) x = static_cast<float>(linearOf(unit(x, most)));
-    c[3] = static_cast<float>(unit(c[3], mostAlpha));
+    c[3] = static_cast<float>(unit(c[3], maxAlpha));
   }
 }
 

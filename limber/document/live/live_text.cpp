@@ -17,7 +17,7 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kMostLiveJoints = 1000;
+constexpr std::size_t kMaxLiveJoints = 1000;
 
 constexpr std::size_t kNumbers = 7;  // of a joint
 
@@ -61,8 +61,8 @@ Skeleton liveSkeletonFrom(std::string_view text) {
   const Json json = parseJson(text, ignored);
   const JsonView joints = JsonView(json).array("joints");
   if (joints.size() == 0) joints.fail("has no joint");
-  if (joints.size() > kMostLiveJoints) {
-    throw Error(ErrorCode::kLimit, fmt::format("has more than {} joints", kMostLiveJoints));
+  if (joints.size() > kMaxLiveJoints) {
+    throw Error(ErrorCode::kLimit, fmt::format("has more than {} joints", kMaxLiveJoints));
   }
   Skeleton skeleton;
   for (std::size_t j = 0; j < joints.size(); ++j) {

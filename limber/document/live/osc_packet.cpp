@@ -12,7 +12,7 @@ namespace {
 constexpr std::string_view kBundle = "#bundle";
 constexpr std::size_t kTimeTag = 8;  // bytes
 constexpr int kDeepest = 8;
-constexpr std::size_t kMostValues = 32;
+constexpr std::size_t kMaxValues = 32;
 
 // Reads a packet from its front; nothing where it ends before.
 class OscReader {
@@ -57,7 +57,7 @@ std::optional<OscMessage> readMessage(ByteSpan packet) {
   OscMessage message{*address, {}};
   if (reader.atEnd()) return message;  // old senders leave the types out where there are no values
   const std::optional<std::string_view> types = reader.text();
-  if (!types || !types->starts_with(',') || types->size() > kMostValues + 1) return std::nullopt;
+  if (!types || !types->starts_with(',') || types->size() > kMaxValues + 1) return std::nullopt;
   for (const char type : types->substr(1)) {
     if (type == 'T' || type == 'F' || type == 'N' || type == 'I') {
       message.values.emplace_back(std::int32_t{type == 'T'});

@@ -107,17 +107,17 @@ std::optional<Transform> transformIn(const OscMessage& message) {
   return transform;
 }
 
-Vec3 smplPlace(const Skeleton& smpl, std::string_view joint) {
-  Vec3 place = Vec3::Zero();
+Vec3 smplPosition(const Skeleton& smpl, std::string_view joint) {
+  Vec3 position = Vec3::Zero();
   for (std::optional<Index> j = smpl.find(joint); j; j = smpl.joints[*j].parent) {
-    place += smpl.joints[*j].rest.translation;
+    position += smpl.joints[*j].rest.translation;
   }
-  return place;
+  return position;
 }
 
 double lowestOf(const Skeleton& skeleton) {
   double lowest = 0;
-  for (const Vec3& place : restPositions(skeleton)) lowest = std::min(lowest, place.y());
+  for (const Vec3& position : restPositions(skeleton)) lowest = std::min(lowest, position.y());
   return lowest;
 }
 
@@ -168,7 +168,7 @@ const Skeleton* VmcStream::skeleton(double seconds) {
     if (b > 0) {
       joint.rest.translation =
           placed ? bones_[b]->translation
-                 : Vec3(smplPlace(smpl, kBones[b].smpl) - smplPlace(smpl, kBones[*vmcBone(above)].smpl));
+                 : Vec3(smplPosition(smpl, kBones[b].smpl) - smplPosition(smpl, kBones[*vmcBone(above)].smpl));
     }
     skeleton_.joints.push_back(std::move(joint));
     boneOf_.push_back(b);

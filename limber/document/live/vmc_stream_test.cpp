@@ -14,8 +14,8 @@ using testing::vmcMessage;
 
 const Quat kNoTurn = Quat::Identity();
 
-Bytes bone(const std::string& name, const Vec3& place = Vec3::Zero(), const Quat& rotation = kNoTurn) {
-  return vmcMessage("/VMC/Ext/Bone/Pos", name, place, rotation);
+Bytes bone(const std::string& name, const Vec3& position = Vec3::Zero(), const Quat& rotation = kNoTurn) {
+  return vmcMessage("/VMC/Ext/Bone/Pos", name, position, rotation);
 }
 
 TEST(VmcStream, ItsSkeletonIsThereOnceItsBonesAre) {

@@ -6,12 +6,12 @@ namespace limber {
 
 Asset meshAsset(const TriMesh& mesh) {
   Asset asset;
-  std::vector<float> places;
+  std::vector<float> positions;
   std::vector<Index> corners;
-  for (const Vec3f& p : mesh.positions) places.insert(places.end(), {p.x(), p.y(), p.z()});
+  for (const Vec3f& p : mesh.positions) positions.insert(positions.end(), {p.x(), p.y(), p.z()});
   for (const Triangle& t : mesh.triangles) corners.insert(corners.end(), t.begin(), t.end());
   gltf::Primitive primitive;
-  primitive.attributes.set("POSITION", addFloatAccessor(asset, places, 3, kVertexTarget, true));
+  primitive.attributes.set("POSITION", addFloatAccessor(asset, positions, 3, kVertexTarget, true));
   primitive.indices = addAccessor(
       asset, {static_cast<Index>(corners.size()), 1, ComponentType::kU32, false},
       {reinterpret_cast<const std::uint8_t*>(corners.data()), corners.size() * sizeof(Index)}, kIndexTarget);

@@ -341,14 +341,14 @@ class PlyReader {
     if (mesh_.attributes.empty()) refuse("its faces come before its vertices");
     hasFaceColors_ = hasFaceColors_ || std::any_of(element.properties.begin(), element.properties.end(),
                                                    [](const Property& property) { return property.name == "red"; });
-    std::vector<double> corners, places;
+    std::vector<double> corners, positions;
     for (std::uint64_t face = 0; face < element.count; ++face) {
       corners.clear();
-      places.clear();
+      positions.clear();
       for (const Property& property : element.properties) {
         const bool isCorners = property.name == "vertex_indices" || property.name == "vertex_index";
         if (property.countType && (isCorners || property.name == "texcoord")) {
-          std::vector<double>& list = isCorners ? corners : places;
+          std::vector<double>& list = isCorners ? corners : positions;
           for (std::size_t left = body_.nextCount(*property.countType); left > 0; --left) {
             list.push_back(body_.next(property.type));
           }
@@ -356,7 +356,7 @@ class PlyReader {
           skip(property);
         }
       }
-      element.name == "face" ? addFace(face, corners, places) : addStrips(face, corners);
+      element.name == "face" ? addFace(face, corners, positions) : addStrips(face, corners);
     }
   }
 
@@ -367,14 +367,14 @@ class PlyReader {
     return static_cast<Index>(corner);
   }
 
-  void addFace(std::uint64_t face, const std::vector<double>& corners, const std::vector<double>& places) {
+  void addFace(std::uint64_t face, const std::vector<double>& corners, const std::vector<double>& positions) {
     if (corners.empty()) return;
     polygon_.clear();
     for (const double corner : corners) polygon_.push_back(vertexOf(face, corner));
     std::vector<Index>& list = mesh_.corners[std::min<std::size_t>(polygon_.size(), 3) - 1];
     if (polygon_.size() < 4) {
       list.insert(list.end(), polygon_.begin(), polygon_.end());
-      if (polygon_.size() == 3) keepPlaces(places, {0, 1, 2});
+      if (polygon_.size() == 3) keepTexCoords(positions, {0, 1, 2});
       return;
     }
     std::vector<Vec3> points;
@@ -385,18 +385,18 @@ class PlyReader {
     triangulatePolygon(points, cut_);
     for (const std::array<Index, 3>& triangle : cut_) {
       for (const Index corner : triangle) list.push_back(polygon_[corner]);
-      keepPlaces(places, triangle);
+      keepTexCoords(positions, triangle);
     }
   }
 
   // The texture coordinates of the triangle that was added last, whose corners are these of the polygon.
-  void keepPlaces(const std::vector<double>& places, const std::array<Index, 3>& corners) {
-    if (places.empty() && places_.empty()) return;
-    places_.resize(2 * (mesh_.corners[2].size() - 3), 0.f);
+  void keepTexCoords(const std::vector<double>& positions, const std::array<Index, 3>& corners) {
+    if (positions.empty() && texCoords_.empty()) return;
+    texCoords_.resize(2 * (mesh_.corners[2].size() - 3), 0.f);
     for (const Index corner : corners) {
-      const bool given = places.size() >= 2 * (std::size_t{corner} + 1);
-      places_.push_back(given ? static_cast<float>(places[2 * std::size_t{corner}]) : 0);
-      places_.push_back(given ? static_cast<float>(places[2 * std::size_t{corner} + 1]) : 0);
+      const bool given = positions.size() >= 2 * (std::size_t{corner} + 1);
+      texCoords_.push_back(given ? static_cast<float>(positions[2 * std::size_t{corner}]) : 0);
+      texCoords_.push_back(given ? static_cast<float>(positions[2 * std::size_t{corner} + 1]) : 0);
     }
   }
 
@@ -413,7 +413,7 @@ class PlyReader {
       if (length < 3) continue;
       const Index a = strip[length - 3], b = strip[length - 2], c = strip[length - 1];
       for (const Index v : length % 2 ? std::array{a, b, c} : std::array{b, a, c}) mesh_.corners[2].push_back(v);
-      keepPlaces({}, {0, 1, 2});
+      keepTexCoords({}, {0, 1, 2});
     }
   }
 
@@ -433,7 +433,7 @@ class PlyReader {
   // Corners that have texture coordinates of their own are vertices of their own, until they are joined.
   void spreadCorners() {
     std::vector<Index>& corners = mesh_.corners[2];
-    places_.resize(2 * corners.size(), 0.f);
+    texCoords_.resize(2 * corners.size(), 0.f);
     std::erase_if(mesh_.attributes, [](const VertexAttribute& attribute) { return attribute.name == "TEXCOORD_0"; });
     for (VertexAttribute& attribute : mesh_.attributes) {
       std::vector<float> values;
@@ -444,14 +444,14 @@ class PlyReader {
       }
       attribute.values = std::move(values);
     }
-    mesh_.attributes.push_back({"TEXCOORD_0", 2, std::move(places_)});
+    mesh_.attributes.push_back({"TEXCOORD_0", 2, std::move(texCoords_)});
     for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = static_cast<Index>(i);
     mesh_.corners[0].clear();
     mesh_.corners[1].clear();
   }
 
   Asset asset() {
-    if (!places_.empty()) spreadCorners();
+    if (!texCoords_.empty()) spreadCorners();
     for (VertexAttribute& attribute : mesh_.attributes) {
       if (attribute.name != "TEXCOORD_0") continue;
       for (std::size_t i = 1; i < attribute.values.size(); i += 2) attribute.values[i] = 1 - attribute.values[i];
@@ -492,7 +492,7 @@ class PlyReader {
   const Resolver& resolver_;
   PlainMesh mesh_;
   Index vertexCount_ = 0;
-  std::vector<float> places_;  // texture coordinates by triangle corner
+  std::vector<float> texCoords_;  // texture coordinates by triangle corner
   std::size_t others_ = 0;
   bool hasFaceColors_ = false;
   std::vector<Index> polygon_;             // of the face in hand

@@ -7,7 +7,7 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kMostCornersCut = 1024;
+constexpr std::size_t kMaxCornersCut = 1024;
 constexpr std::size_t kTestsPerCorner = 32;  // of ears; spirals need most
 
 using Vec2 = Eigen::Vector2d;
@@ -34,7 +34,7 @@ std::vector<Vec2> flattened(std::span<const Vec3> corners) {
 
 class EarCutter {
  public:
-  explicit EarCutter(std::span<const Vec3> corners) : places_(flattened(corners)) {
+  explicit EarCutter(std::span<const Vec3> corners) : positions_(flattened(corners)) {
     for (Index i = 0; i < corners.size(); ++i) left_.push_back(i);
   }
 
@@ -67,22 +67,22 @@ class EarCutter {
   Index after(std::size_t i) const { return left_[i + 1 == left_.size() ? 0 : i + 1]; }
 
   double turnAt(std::size_t i) const {
-    const Vec2 &a = places_[before(i)], &b = places_[left_[i]], &c = places_[after(i)];
+    const Vec2 &a = positions_[before(i)], &b = positions_[left_[i]], &c = positions_[after(i)];
     return crossOf(b - a, c - b);
   }
 
   bool isEar(std::size_t i) const {
     if (turnAt(i) <= 0) return false;
-    const Vec2 &a = places_[before(i)], &b = places_[left_[i]], &c = places_[after(i)];
+    const Vec2 &a = positions_[before(i)], &b = positions_[left_[i]], &c = positions_[after(i)];
     return std::none_of(left_.begin(), left_.end(), [&](Index other) {
       if (other == before(i) || other == left_[i] || other == after(i)) return false;
-      const Vec2& p = places_[other];
+      const Vec2& p = positions_[other];
       if (p == a || p == b || p == c) return false;  // a bridge to a hole passes through a corner twice
       return crossOf(b - a, p - a) >= 0 && crossOf(c - b, p - b) >= 0 && crossOf(a - c, p - c) >= 0;
     });
   }
 
-  std::vector<Vec2> places_;
+  std::vector<Vec2> positions_;
   std::vector<Index> left_;
 };
 
@@ -104,7 +104,7 @@ void triangulatePolygon(std::span<const Vec3> corners, std::vector<std::array<In
     triangles.push_back({1, 2, 3});
     return;
   }
-  if (isConvex || corners.size() > kMostCornersCut) return addFan(corners.size(), triangles);
+  if (isConvex || corners.size() > kMaxCornersCut) return addFan(corners.size(), triangles);
   cutter.run(triangles);
 }
 

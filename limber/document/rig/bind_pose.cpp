@@ -55,16 +55,16 @@ bool sameScale(const Affine& a, const Affine& b) {
 }
 
 // Places the skins of one document.
-class SkinPlacer {
+class BindPoseBuilder {
  public:
-  SkinPlacer(const Asset& asset, const SceneGraph& graph) : asset_(asset), graph_(graph) {
+  BindPoseBuilder(const Asset& asset, const SceneGraph& graph) : asset_(asset), graph_(graph) {
     bind_.resize(graph.nodeCount());
     placedBelow_.resize(graph.nodeCount());
     pose_.skinToWorld.assign(asset.document.skins.size(), Affine::Identity());
     pose_.isJoint.assign(graph.nodeCount(), false);
   }
 
-  BindPose place() {
+  BindPose build() {
     findSkins();
     for (std::size_t i = 0; i < pose_.skins.size(); ++i) placeSkin(pose_.skins[i], skinNodes_[i]);
     placeNodes();
@@ -173,7 +173,7 @@ class SkinPlacer {
 }  // namespace
 
 BindPose readBindPose(const Asset& asset, const SceneGraph& graph) {
-  return SkinPlacer(asset, graph).place();
+  return BindPoseBuilder(asset, graph).build();
 }
 
 namespace {

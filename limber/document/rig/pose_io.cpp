@@ -142,7 +142,7 @@ void freezeGeometry(Asset& asset, const Geometry& geometry, std::span<const Vec3
       freezePrimitive(asset, mesh.primitives[instance.primitive], geometry, instance, positions, normals);
     }
     mesh.weights.clear();
-    nodes.placeStatic(group, number);
+    nodes.attachStatic(group, number);
   }
   nodes.finish();
   removeChannels(

@@ -125,17 +125,17 @@ std::vector<Transform> localsAt(const Asset& asset, Index animation, double seco
     while (key + 2 < times.size() && times[key + 1] <= seconds) ++key;
     const std::size_t next = std::min(key + 1, times.size() - 1);
     const double span = times[next] - times[key];
-    const double share = span > 0 ? std::clamp((seconds - times[key]) / span, 0.0, 1.0) : 0;
+    const double fraction = span > 0 ? std::clamp((seconds - times[key]) / span, 0.0, 1.0) : 0;
     const std::string& path = channel.target.path;
     Transform& local = locals[*channel.target.node];
     const auto at = [&](std::size_t k, Index components, Index i) { return double{values[components * k + i]}; };
     if (path == "rotation") {
       const Quat a(at(key, 4, 3), at(key, 4, 0), at(key, 4, 1), at(key, 4, 2));
       const Quat b(at(next, 4, 3), at(next, 4, 0), at(next, 4, 1), at(next, 4, 2));
-      local.rotation = a.normalized().slerp(share, b.normalized());
+      local.rotation = a.normalized().slerp(fraction, b.normalized());
     } else {
       Vec3& vector = path == "translation" ? local.translation : local.scale;
-      for (Index i = 0; i < 3; ++i) vector[i] = (1 - share) * at(key, 3, i) + share * at(next, 3, i);
+      for (Index i = 0; i < 3; ++i) vector[i] = (1 - fraction) * at(key, 3, i) + fraction * at(next, 3, i);
     }
   }
   return locals;
@@ -258,9 +258,9 @@ TEST(RestPose, ClipsLookTheSameAndThePoseIsTheBindPose) {
   EXPECT_TRUE(asset.warnings.empty());
 
   const AssetSkeleton after = readSkeleton(asset);
-  const Pose stands = readNodePose(asset, after);
+  const Pose stance = readNodePose(asset, after);
   for (Index j = 0; j < after.skeleton.jointCount(); ++j) {
-    const Affine rest = after.skeleton.joints[j].rest.toAffine(), now = stands.locals[j].toAffine();
+    const Affine rest = after.skeleton.joints[j].rest.toAffine(), now = stance.locals[j].toAffine();
     EXPECT_LT((rest.matrix() - now.matrix()).cwiseAbs().maxCoeff(), 1e-5) << j;
   }
 }

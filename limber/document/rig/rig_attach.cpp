@@ -107,7 +107,7 @@ std::vector<Index> attachRig(Asset& asset, const Geometry& geometry, const Skele
       const PrimitiveInstance& instance = geometry.instances[i];
       writeWeightAttributes(asset, {mesh, instance.primitive}, instance, weights, identity, skeleton.jointCount());
     }
-    skinned.place(group, mesh, skinned.addSkin({kRigName, rig.joints, rig.toBind, rig.root}, group.toWorld));
+    skinned.attach(group, mesh, skinned.addSkin({kRigName, rig.joints, rig.toBind, rig.root}, group.toWorld));
   }
   skinned.finish();
   unused.sweep(asset);

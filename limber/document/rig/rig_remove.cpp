@@ -18,13 +18,13 @@ namespace limber {
 namespace {
 
 // Relative: placements that differ less are one, since inverse bind matrices are stored in single precision.
-constexpr double kSamePlace = 1e-5;
+constexpr double kSamePosition = 1e-5;
 
 bool near(const Affine& a, const Affine& b) {
   const double size = std::max(a.linear().cwiseAbs().maxCoeff(), b.linear().cwiseAbs().maxCoeff());
   const double reach = std::max({size, a.translation().norm(), b.translation().norm()});
-  return (a.linear() - b.linear()).cwiseAbs().maxCoeff() <= kSamePlace * size &&
-         (a.translation() - b.translation()).cwiseAbs().maxCoeff() <= kSamePlace * reach;
+  return (a.linear() - b.linear()).cwiseAbs().maxCoeff() <= kSamePosition * size &&
+         (a.translation() - b.translation()).cwiseAbs().maxCoeff() <= kSamePosition * reach;
 }
 
 class RigRemover {
@@ -88,8 +88,8 @@ class RigRemover {
       const auto source = byName.find(name.substr(0, length));
       if (source == byName.end() || source->second.size() != 1) continue;
       const Index home = source->second[0];
-      const Affine& place = pose_.skinToWorld[*shown.skin];
-      if (node(home).mesh || !keep[home] || !near(place, pose_.nodeWorld[home])) continue;
+      const Affine& transform = pose_.skinToWorld[*shown.skin];
+      if (node(home).mesh || !keep[home] || !near(transform, pose_.nodeWorld[home])) continue;
       node(home).mesh = std::exchange(shown.mesh, std::nullopt);
       if (!shown.weights.empty()) node(home).weights = shown.weights;
       retargetMorphChannels(asset_, n, home);
@@ -116,10 +116,10 @@ class RigRemover {
   }
 
   // Where a node stands from now on: as in the bind pose, and a skinned one where its skin had its mesh.
-  Affine placeOf(Index n) const {
+  Affine transformOf(Index n) const {
     const gltf::Node& placed = node(n);
-    const Affine place = placed.skin && placed.mesh ? pose_.skinToWorld[*placed.skin] : pose_.nodeWorld[n];
-    return near(place, graph_.world[n]) ? graph_.world[n] : place;
+    const Affine transform = placed.skin && placed.mesh ? pose_.skinToWorld[*placed.skin] : pose_.nodeWorld[n];
+    return near(transform, graph_.world[n]) ? graph_.world[n] : transform;
   }
 
   void placeKeptNodes(const std::vector<bool>& keep) {
@@ -129,9 +129,9 @@ class RigRemover {
       if (!keep[n]) continue;
       const Affine above = graph_.parent[n] ? world[*graph_.parent[n]] : Affine::Identity();
       const Affine stays = above * graph_.local[n];  // where it stands if its own transform is left as it is
-      const Affine place = placeOf(n);
-      const Affine local = above.inverse(Eigen::Affine) * place;
-      if (near(place, stays) || !local.matrix().allFinite()) {
+      const Affine transform = transformOf(n);
+      const Affine local = above.inverse(Eigen::Affine) * transform;
+      if (near(transform, stays) || !local.matrix().allFinite()) {
         world[n] = stays;
         continue;
       }

@@ -148,7 +148,7 @@ class Reweighter {
       writeWeightAttributes(asset_, {mesh, instance.primitive}, instance, weights_, skinJointOf,
                             static_cast<Index>(nodes.size()));
     }
-    skinned.place(group, mesh, *skin);
+    skinned.attach(group, mesh, *skin);
   }
 
   // A part that hung on a joint gets a skin of its own, with just the joints that it needs.
@@ -198,7 +198,7 @@ class Reweighter {
   std::vector<Index> touched_;   // skins made or extended here
 };
 
-bool isHeld(const PrimitiveInstance& part, const SkinWeights& weights) {
+bool isSkinned(const PrimitiveInstance& part, const SkinWeights& weights) {
   const std::span<const float> all = weights.weights;
   const std::span<const float> own =
       all.subspan(std::size_t{part.firstVertex} * weights.slots, std::size_t{part.vertexCount} * weights.slots);
@@ -206,14 +206,14 @@ bool isHeld(const PrimitiveInstance& part, const SkinWeights& weights) {
 }
 
 // The parts of the nodes that show anything that a joint holds; the vertices themselves are not needed.
-Geometry heldParts(const Geometry& geometry, const SkinWeights& weights) {
-  std::set<std::pair<Index, Index>> held;
+Geometry skinnedParts(const Geometry& geometry, const SkinWeights& weights) {
+  std::set<std::pair<Index, Index>> skinned;
   for (const PrimitiveInstance& part : geometry.instances) {
-    if (isHeld(part, weights)) held.insert({part.node, part.copy});
+    if (isSkinned(part, weights)) skinned.insert({part.node, part.copy});
   }
   Geometry result;
   for (const PrimitiveInstance& part : geometry.instances) {
-    if (held.count({part.node, part.copy}) > 0) result.instances.push_back(part);
+    if (skinned.count({part.node, part.copy}) > 0) result.instances.push_back(part);
   }
   return result;
 }
@@ -233,8 +233,8 @@ void replaceWeights(Asset& asset, const Geometry& geometry, const AssetSkeleton&
     }
   }
   const AccessorSweep unused(asset);
-  const Geometry held = heldParts(geometry, weights);
-  Reweighter(asset, held, skeleton, weights).run();
+  const Geometry skinned = skinnedParts(geometry, weights);
+  Reweighter(asset, skinned, skeleton, weights).run();
   unused.sweep(asset);
 }
 

@@ -135,10 +135,10 @@ void hangRoots(gltf::Document& document, const SceneGraph& graph, const std::vec
   };
   const auto takeOut = [&](std::vector<Index>& list, bool wanted) {
     const auto first = std::find_if(list.begin(), list.end(), isRoot);
-    const auto place = first - list.begin();
+    const auto index = first - list.begin();
     if (first == list.end()) return;
     std::erase_if(list, isRoot);
-    if (wanted) list.insert(list.begin() + place, node);
+    if (wanted) list.insert(list.begin() + index, node);
   };
   for (Index n = 0; n < node; ++n) takeOut(document.nodes[n].children, parent == n);
   for (gltf::Scene& scene : document.scenes) {
@@ -194,10 +194,10 @@ std::optional<Index> rootOnGround(const Skeleton& skeleton) {
   if (joints.size() < 2 || std::count_if(joints.begin(), joints.end(), isRoot) != 1) return std::nullopt;
   const auto root = static_cast<Index>(std::find_if(joints.begin(), joints.end(), isRoot) - joints.begin());
   Box box;
-  const std::vector<Vec3> places = restPositions(skeleton);
-  for (const Vec3& place : places) box.add(place);
+  const std::vector<Vec3> positions = restPositions(skeleton);
+  for (const Vec3& position : positions) box.add(position);
   const double most = kOnGround * box.diagonal();
-  if (places[root].norm() > most || places[root].y() - box.min.y() > most) return std::nullopt;
+  if (positions[root].norm() > most || positions[root].y() - box.min.y() > most) return std::nullopt;
   return root;
 }
 

@@ -83,7 +83,7 @@ Index SkinnedNodes::addSkin(const SkinJoints& joints, const Affine& toWorld) {
 }
 
 // Can the node show a mesh that is in world space already?
-bool SkinnedNodes::standsAtOrigin(const MeshGroup& group) const {
+bool SkinnedNodes::isAtOrigin(const MeshGroup& group) const {
   const gltf::Node& node = asset_.document.nodes[group.node];
   return !graph_.parent[group.node] && group.copy == 0 && !node.hasTransform() &&
          extensionOf(node, kInstancingName) == nullptr;
@@ -110,10 +110,10 @@ Index SkinnedNodes::moveToRoot(const MeshGroup& group, const char* suffix) {
   return moved;
 }
 
-void SkinnedNodes::place(const MeshGroup& group, Index mesh, Index skin) {
+void SkinnedNodes::attach(const MeshGroup& group, Index mesh, Index skin) {
   const bool wasSkinned = asset_.document.nodes[group.node].skin.has_value();  // then it stays as the file has it
   if (!wasSkinned && group.copy == 0 && loosesAnimation(group.node)) ++lostAnimations_;
-  const bool stays = wasSkinned || standsAtOrigin(group);
+  const bool stays = wasSkinned || isAtOrigin(group);
   const Index node = stays ? group.node : moveToRoot(group, "_skinned");
   gltf::Node& shown = asset_.document.nodes[node];
   shown.mesh = mesh;
@@ -121,8 +121,8 @@ void SkinnedNodes::place(const MeshGroup& group, Index mesh, Index skin) {
   if (!stays) takeMeshOff(group);
 }
 
-void SkinnedNodes::placeStatic(const MeshGroup& group, Index mesh) {
-  const bool stays = standsAtOrigin(group);
+void SkinnedNodes::attachStatic(const MeshGroup& group, Index mesh) {
+  const bool stays = isAtOrigin(group);
   const Index node = stays ? group.node : moveToRoot(group, "_posed");
   gltf::Node& shown = asset_.document.nodes[node];
   shown.mesh = mesh;

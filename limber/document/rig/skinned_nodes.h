@@ -50,10 +50,10 @@ class SkinnedNodes {
   Index addSkin(const SkinJoints& joints, const Affine& toWorld);
 
   // Lets the group's node, or a new one, show `mesh` with `skin`.
-  void place(const MeshGroup& group, Index mesh, Index skin);
+  void attach(const MeshGroup& group, Index mesh, Index skin);
 
   // The same without a skin, for a mesh whose vertices are in world space; the node keeps no morph weights.
-  void placeStatic(const MeshGroup& group, Index mesh);
+  void attachStatic(const MeshGroup& group, Index mesh);
 
   // Makes a root node part of every scene that shows one of the meshes.
   void showInScenes(Index root);
@@ -62,7 +62,7 @@ class SkinnedNodes {
   void finish();
 
  private:
-  bool standsAtOrigin(const MeshGroup& group) const;
+  bool isAtOrigin(const MeshGroup& group) const;
   bool loosesAnimation(Index node) const;
   Index moveToRoot(const MeshGroup& group, const char* suffix);
   void takeMeshOff(const MeshGroup& group);

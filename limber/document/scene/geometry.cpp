@@ -44,11 +44,11 @@ GpuInstancing gpuInstancing(const Asset& asset, Index node) {
   const auto find = [&](const char* name, Index components) {
     const std::optional<Index> accessor = attributes.find(name);
     if (!accessor) return accessor;
-    const std::string place = fmt::format("{}.extensions.{}.{}", where, kInstancingName, name);
-    if (*accessor >= asset.document.accessors.size()) failAt(place, "names an accessor that does not exist");
+    const std::string location = fmt::format("{}.extensions.{}.{}", where, kInstancingName, name);
+    if (*accessor >= asset.document.accessors.size()) failAt(location, "names an accessor that does not exist");
     const AccessorInfo info = accessorInfo(asset, *accessor);
-    if (info.components != components) failAt(place, "has the wrong accessor type");
-    if (count.value_or(info.count) != info.count) failAt(place, "is not as long as the other attributes");
+    if (info.components != components) failAt(location, "has the wrong accessor type");
+    if (count.value_or(info.count) != info.count) failAt(location, "is not as long as the other attributes");
     count = info.count;
     return accessor;
   };

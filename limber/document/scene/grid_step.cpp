@@ -20,7 +20,7 @@ constexpr double kSure = 16;               // values farther apart than chance e
 constexpr double kFewestSteps = 100;       // of a grid along its longest axis; 7 bits have 127
 constexpr double kFairOdds = 0.6;          // of a value to lie on a grid by chance: more tells nothing
 constexpr std::size_t kFewestLevels = 12;  // of values that lie on a grid: fewer may be round numbers
-constexpr int kFewestBits = 8, kMostBits = 16;
+constexpr int kFewestBits = 8, kMaxBits = 16;
 constexpr double kEqualSteps = 2;  // by how much steps along the axes differ at most, for lack of values
 
 double declaredStep(const AccessorInfo& accessor) {
@@ -105,7 +105,7 @@ double stepOfOwnBox(std::span<const float> values, const std::array<AxisValues, 
     largest = std::max(largest, axis.largest);
   }
   if (!(longest > 0)) return 0;
-  for (int bits = kFewestBits; bits <= kMostBits; ++bits) {
+  for (int bits = kFewestBits; bits <= kMaxBits; ++bits) {
     for (const double fewer : {1.0, 2.0}) {
       const double step = longest / (std::ldexp(1.0, bits) - fewer);
       if (liesOnGrid(values, axes, step, declared + kFloatStep * largest)) return step;

@@ -14,7 +14,7 @@ namespace limber {
 namespace {
 
 constexpr std::array<std::uint8_t, 6> kNpyMagic = {0x93, 'N', 'U', 'M', 'P', 'Y'};
-constexpr std::size_t kMostAxes = 32;  // NumPy's own limit
+constexpr std::size_t kMaxAxes = 32;  // NumPy's own limit
 
 struct NpyHeader {
   std::string type;  // "<f8"
@@ -100,11 +100,11 @@ class NpyHeaderText {
 
   std::size_t length() {
     skipSpace();
-    constexpr std::size_t kMost = std::numeric_limits<std::size_t>::max() / 10 - 1;
+    constexpr std::size_t kMax = std::numeric_limits<std::size_t>::max() / 10 - 1;
     std::size_t value = 0;
     const std::size_t begin = at_;
     for (; at_ < text_.size() && text_[at_] >= '0' && text_[at_] <= '9'; ++at_) {
-      if (value > kMost) refuse();
+      if (value > kMax) refuse();
       value = 10 * value + static_cast<std::size_t>(text_[at_] - '0');
     }
     if (at_ == begin) refuse();
@@ -115,7 +115,7 @@ class NpyHeaderText {
     std::vector<std::size_t> shape;
     expect('(');
     while (!take(')')) {
-      if (shape.size() == kMostAxes) refuse();
+      if (shape.size() == kMaxAxes) refuse();
       shape.push_back(length());
       if (!take(',')) {
         expect(')');

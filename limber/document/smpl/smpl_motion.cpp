@@ -22,8 +22,8 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kMostSmplFrames = std::size_t{1} << 22;  // their times still differ in single precision
-constexpr std::size_t kMostNumbersOfFrame = 3 * 55;
+constexpr std::size_t kMaxSmplFrames = std::size_t{1} << 22;  // their times still differ in single precision
+constexpr std::size_t kMaxNumbersOfFrame = 3 * 55;
 constexpr double kUsualRate = 30;  // frames a second
 constexpr double kLowestRate = 1e-6, kHighestRate = 1e6;
 constexpr double kLargestNumber = 1e30;  // leaves single precision room for products
@@ -50,9 +50,9 @@ void checkLimit(const NpzFiles& arrays, const std::string& name) {
   const auto found = arrays.find(name + ".npy");
   if (found == arrays.end()) return;
   const std::vector<std::size_t> shape = readNpyShape(found->second, found->first);
-  std::size_t room = shape.size() > 1 && shape[0] > kMostSmplFrames ? 0 : kMostSmplFrames * kMostNumbersOfFrame;
+  std::size_t room = shape.size() > 1 && shape[0] > kMaxSmplFrames ? 0 : kMaxSmplFrames * kMaxNumbersOfFrame;
   for (const std::size_t length : shape) room /= std::max<std::size_t>(length, 1);
-  if (room == 0) throw Error(ErrorCode::kLimit, fmt::format("has more than {} frames", kMostSmplFrames), found->first);
+  if (room == 0) throw Error(ErrorCode::kLimit, fmt::format("has more than {} frames", kMaxSmplFrames), found->first);
 }
 
 // The first of these that there is.
@@ -186,8 +186,8 @@ class SmplParts {
 SmplPoses readPoses(const NpzFiles& arrays, Warnings& warnings) {
   std::optional<SmplRows> whole = findRows(arrays, {"poses", "pose", "fullpose", "full_pose"});
   SmplPoses poses = whole ? wholePoses(std::move(*whole)) : SmplParts(arrays, warnings).take();
-  if (poses.frames > kMostSmplFrames) {
-    throw Error(ErrorCode::kLimit, fmt::format("has more than {} frames", kMostSmplFrames));
+  if (poses.frames > kMaxSmplFrames) {
+    throw Error(ErrorCode::kLimit, fmt::format("has more than {} frames", kMaxSmplFrames));
   }
   return poses;
 }
@@ -282,23 +282,24 @@ class JointTurns {
 class SmplFrames {
  public:
   explicit SmplFrames(const Skeleton& skeleton)
-      : skeleton_(skeleton), turned_(skeleton.jointCount()), places_(turned_.size()), turns_(turned_.size()) {}
+      : skeleton_(skeleton), turned_(skeleton.jointCount()), positions_(turned_.size()), turns_(turned_.size()) {}
 
   void add(const std::vector<double>& axisAngles, const Vec3& pelvis) {
     for (std::size_t j = 0; j < turned_.size(); ++j) {
       const Quat rotation = rotationOf(axisAngles.data() + 3 * j);
       const Joint& joint = skeleton_.joints[j];
       turned_[j] = joint.parent ? turned_[*joint.parent] * rotation : rotation;
-      places_[j] = joint.parent ? places_[*joint.parent] + turned_[*joint.parent] * joint.rest.translation : pelvis;
-      lowest_ = lowest_.cwiseMin(places_[j]);
-      highest_ = highest_.cwiseMax(places_[j]);
+      positions_[j] =
+          joint.parent ? positions_[*joint.parent] + turned_[*joint.parent] * joint.rest.translation : pelvis;
+      lowest_ = lowest_.cwiseMin(positions_[j]);
+      highest_ = highest_.cwiseMax(positions_[j]);
       if (joint.parent) turns_[j].add(rotation, roots_.size());
     }
     constexpr std::size_t kHead = 15, kLeftAnkle = 7, kRightAnkle = 8;
-    const Vec3 upwards = places_[kHead] - 0.5 * (places_[kLeftAnkle] + places_[kRightAnkle]);
+    const Vec3 upwards = positions_[kHead] - 0.5 * (positions_[kLeftAnkle] + positions_[kRightAnkle]);
     upwards_ += upwards;
     heads_.add(upwards);
-    roots_.push_back({places_[0], turned_[0]});
+    roots_.push_back({positions_[0], turned_[0]});
   }
 
   // One that is upside down along Y does not have Z up.
@@ -318,9 +319,9 @@ class SmplFrames {
     std::vector<float> times;
     Track<Vec3f> translations;
     Track<Eigen::Quaternionf> rotations;
-    for (const auto& [place, rotation] : roots_) {
+    for (const auto& [position, rotation] : roots_) {
       times.push_back(static_cast<float>(static_cast<double>(times.size()) / framesPerSecond));
-      translations.values.emplace_back((turn * place + Vec3(0, raise, 0)).cast<float>());
+      translations.values.emplace_back((turn * position + Vec3(0, raise, 0)).cast<float>());
       Eigen::Quaternionf turned = (turn * rotation).cast<float>();
       if (times.size() > 1 && rotations.values.back().coeffs().dot(turned.coeffs()) < 0) {
         turned.coeffs() = -turned.coeffs();
@@ -339,13 +340,13 @@ class SmplFrames {
 
  private:
   struct Root {
-    Vec3 place;
+    Vec3 position;
     Quat rotation;
   };
 
   const Skeleton& skeleton_;
   std::vector<Quat> turned_;  // of the frame at hand, as places_
-  std::vector<Vec3> places_;
+  std::vector<Vec3> positions_;
   std::vector<JointTurns> turns_;  // none of the pelvis
   std::vector<Root> roots_;
   Vec3 lowest_ = Vec3::Constant(std::numeric_limits<double>::infinity());

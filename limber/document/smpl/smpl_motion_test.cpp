@@ -56,7 +56,7 @@ std::vector<Mat3> turnsAt(const Motion& motion, double seconds) {
   return turns;
 }
 
-std::vector<Vec3> placesAt(const Motion& motion, double seconds) {
+std::vector<Vec3> positionsAt(const Motion& motion, double seconds) {
   Pose pose = restPose(motion.skeleton);
   sampleClip(motion.clips.at(0), seconds, pose);
   return posePositions(motion.skeleton, pose);
@@ -121,15 +121,15 @@ TEST(SmplMotion, TellsWhichAxisPointsUp) {
   EXPECT_THAT(testing::warningKinds(turned.warnings), ElementsAre("converted-axes"));
   for (const double seconds : {0.0, 0.03}) {
     const std::vector<Mat3> a = turnsAt(upright, seconds), b = turnsAt(turned, seconds);
-    const std::vector<Vec3> at = placesAt(upright, seconds), also = placesAt(turned, seconds);
+    const std::vector<Vec3> at = positionsAt(upright, seconds), also = positionsAt(turned, seconds);
     for (std::size_t j = 0; j < a.size(); ++j) {
       EXPECT_LT(degreesBetween(a[j], b[j]), 1e-4);
       EXPECT_LT((at[j] - also[j]).norm(), 1e-5);
     }
   }
-  SmplOptions told;
-  told.up = UpAxis::kY;
-  EXPECT_TRUE(readSmplMotion(swaying(22, UpAxis::kZ), "z.npz", told).warnings.empty());
+  SmplOptions options;
+  options.up = UpAxis::kY;
+  EXPECT_TRUE(readSmplMotion(swaying(22, UpAxis::kZ), "z.npz", options).warnings.empty());
 }
 
 TEST(SmplMotion, FramesUpsideDownAreReportedAndTurnedOnRequest) {
@@ -141,7 +141,7 @@ TEST(SmplMotion, FramesUpsideDownAreReportedAndTurnedOnRequest) {
     options.up = up;
     const Motion turned = readSmplMotion(swaying(22, up), "turned.npz", options);
     EXPECT_THAT(testing::warningKinds(turned.warnings), ElementsAre("converted-axes"));
-    const std::vector<Vec3> at = placesAt(upright, 0.03), also = placesAt(turned, 0.03);
+    const std::vector<Vec3> at = positionsAt(upright, 0.03), also = positionsAt(turned, 0.03);
     for (std::size_t j = 0; j < at.size(); ++j) EXPECT_LT((at[j] - also[j]).norm(), 1e-5);
   }
 }
@@ -151,10 +151,10 @@ TEST(SmplMotion, StandsOnTheGround) {
   const Motion motion = readSmplMotion(swaying(22), "sway.npz");
   double lowest = 1e9;
   for (int f = 0; f < 8; ++f) {
-    for (const Vec3& joint : placesAt(motion, f / 120.0)) lowest = std::min(lowest, joint.y());
+    for (const Vec3& joint : positionsAt(motion, f / 120.0)) lowest = std::min(lowest, joint.y());
   }
   EXPECT_NEAR(lowest, 0.02, 1e-6);
-  EXPECT_NEAR(placesAt(motion, 7 / 120.0)[0].x() - placesAt(motion, 0)[0].x(), 0.7, 1e-6);
+  EXPECT_NEAR(positionsAt(motion, 7 / 120.0)[0].x() - positionsAt(motion, 0)[0].x(), 0.7, 1e-6);
 }
 
 // As one of SMPL-X's arrays for each part of the body, under both of their names.
@@ -281,7 +281,7 @@ TEST(SmplMotion, TakesTheJointsOfABody) {
   files["betas.npy"] = npyDoubles({2, 3}, {1, 9, 9, 7, 7, 7});
   const Motion shaped = readSmplMotion(files, "a.npz", options);
   EXPECT_LT((kneeOf(shaped) - Vec3(0, 0.58, 0)).norm(), 1e-9);
-  EXPECT_LT((placesAt(shaped, 0)[0] - Vec3(0, 0.5 + 0.9, 0)).norm(), 1e-6);  // the pelvis at rest, and trans
+  EXPECT_LT((positionsAt(shaped, 0)[0] - Vec3(0, 0.5 + 0.9, 0)).norm(), 1e-6);  // the pelvis at rest, and trans
   options.body = lineBody(52);
   EXPECT_LT((kneeOf(readSmplMotion(files, "a.npz", options)) - Vec3(0, 0.58, 0)).norm(), 1e-9);
   EXPECT_EQ(readSmplMotion(files, "a.npz", options).skeleton.joints.size(), 24u);
@@ -329,7 +329,7 @@ TEST(SmplMotion, MovesAsTheBvhThatItWasMadeOf) {
       const Vec3 local = axisAngleOf(above.transpose() * globals.back());
       poses.insert(poses.end(), local.data(), local.data() + 3);
     }
-    const Vec3 root = upright * placesAt(bvh, seconds)[0];
+    const Vec3 root = upright * positionsAt(bvh, seconds)[0];
     trans.insert(trans.end(), root.data(), root.data() + 3);
   }
   NpzFiles files;
@@ -391,12 +391,12 @@ TEST(SmplMotion, ArraysThatNobodyAsksForAreNotUnpacked) {
   const std::string extra = "nobody asks for this";
   stored.emplace_back("extra.npy", extra);
   Bytes archive = testing::storedZip(stored);
-  const auto place = std::search(archive.begin(), archive.end(), extra.begin(), extra.end());
-  ASSERT_NE(place, archive.end());
-  *place ^= 1;  // its checksum tells
+  const auto index = std::search(archive.begin(), archive.end(), extra.begin(), extra.end());
+  ASSERT_NE(index, archive.end());
+  *index ^= 1;  // its checksum tells
   EXPECT_THROW(readZipArchive(archive, "sway.npz"), Error);
   const Motion motion = readSmplMotion(archive, "sway.npz"), wanted = readSmplMotion(swaying(22), "sway.npz");
-  EXPECT_EQ(placesAt(motion, 0.03), placesAt(wanted, 0.03));
+  EXPECT_EQ(positionsAt(motion, 0.03), positionsAt(wanted, 0.03));
   EXPECT_EQ(readMotion(archive, "sway").skeleton.joints.size(), 22u);
   EXPECT_EQ(motionOf(readAsset(archive, "sway.npz")).clips.size(), 1u);
 

@@ -15,7 +15,7 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kMostVertices = 100'000'000;
+constexpr std::size_t kMaxVertices = 100'000'000;
 // How files write "none" in signed and unsigned integers.
 constexpr double kNoParents[] = {-1.0, 4294967295.0, 18446744073709551615.0};
 
@@ -67,15 +67,15 @@ constexpr SmplJoint kLeftFingers[] = {
 
 class SmplTree {
  public:
-  void add(std::string name, std::string_view parent, const Vec3& place) {
+  void add(std::string name, std::string_view parent, const Vec3& position) {
     Joint joint;
     joint.name = std::move(name);
-    joint.rest.translation = place;
+    joint.rest.translation = position;
     if (!parent.empty()) {
       joint.parent = skeleton_.find(parent);
-      joint.rest.translation -= places_[*joint.parent];
+      joint.rest.translation -= positions_[*joint.parent];
     }
-    places_.push_back(place);
+    positions_.push_back(position);
     skeleton_.joints.push_back(std::move(joint));
   }
   void add(std::span<const SmplJoint> joints) {
@@ -92,10 +92,10 @@ class SmplTree {
 
  private:
   Skeleton skeleton_;
-  std::vector<Vec3> places_;
+  std::vector<Vec3> positions_;
 };
 
-std::vector<Vec3> jointPlaces(const NpzFiles& body, std::span<const Vec3> vertices, std::size_t joints) {
+std::vector<Vec3> jointPositions(const NpzFiles& body, std::span<const Vec3> vertices, std::size_t joints) {
   const std::optional<NpyArray> regressor = npzArray(body, "J_regressor");
   if (!regressor) {
     const NpyArray array = neededSmplArray(body, "J");
@@ -103,14 +103,14 @@ std::vector<Vec3> jointPlaces(const NpzFiles& body, std::span<const Vec3> vertic
     return smplPoints(array, "J");
   }
   checkSmplShape(*regressor, "J_regressor", {joints, vertices.size()});
-  std::vector<Vec3> places(joints, Vec3::Zero());
+  std::vector<Vec3> positions(joints, Vec3::Zero());
   for (std::size_t j = 0; j < joints; ++j) {
     for (std::size_t v = 0; v < vertices.size(); ++v) {
-      places[j] += regressor->values[j * vertices.size() + v] * vertices[v];
+      positions[j] += regressor->values[j * vertices.size() + v] * vertices[v];
     }
-    if (!places[j].cast<float>().allFinite()) refuseSmplArray("J_regressor", fmt::format("row {} is not finite", j));
+    if (!positions[j].cast<float>().allFinite()) refuseSmplArray("J_regressor", fmt::format("row {} is not finite", j));
   }
-  return places;
+  return positions;
 }
 
 }  // namespace
@@ -148,7 +148,7 @@ Skeleton smplSkeleton(const NpzFiles& body, std::span<const Vec3> vertices) {
   const NpyArray table = neededSmplArray(body, "kintree_table");
   const std::size_t count = table.shape.empty() ? 0 : table.shape.back();
   checkSmplShape(table, "kintree_table", {2, count});
-  const std::vector<Vec3> places = jointPlaces(body, vertices, count);
+  const std::vector<Vec3> positions = jointPositions(body, vertices, count);
   std::vector<std::string> names = smplJointNames(count);
   Skeleton skeleton;
   for (std::size_t j = 0; j < count; ++j) {
@@ -157,14 +157,14 @@ Skeleton smplSkeleton(const NpzFiles& body, std::span<const Vec3> vertices) {
     }
     Joint joint;
     joint.name = std::move(names[j]);
-    joint.rest.translation = places[j];
+    joint.rest.translation = positions[j];
     const double parent = table.values[j];
     if (std::find(std::begin(kNoParents), std::end(kNoParents), parent) == std::end(kNoParents)) {
       if (!(parent >= 0 && parent < static_cast<double>(j)) || parent != std::floor(parent)) {
         refuseSmplArray("kintree_table", fmt::format("joint {} has a parent that does not come before it", j));
       }
       joint.parent = static_cast<Index>(parent);
-      joint.rest.translation -= places[*joint.parent];
+      joint.rest.translation -= positions[*joint.parent];
     }
     skeleton.joints.push_back(std::move(joint));
   }
@@ -173,7 +173,7 @@ Skeleton smplSkeleton(const NpzFiles& body, std::span<const Vec3> vertices) {
 
 std::vector<Vec3> smplVertices(const NpzFiles& body) {
   const NpyArray array = neededSmplArray(body, "v_template");
-  if (smplRowsOfThree(array, "v_template") > kMostVertices) {
+  if (smplRowsOfThree(array, "v_template") > kMaxVertices) {
     refuseSmplArray("v_template", "has more than 100 million rows");
   }
   return smplPoints(array, "v_template");

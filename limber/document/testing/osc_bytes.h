@@ -51,9 +51,10 @@ inline Bytes oscBundle(const std::vector<Bytes>& elements) {
 }
 
 // As VMC sends a bone or the root: numbers in Unity's space.
-inline Bytes vmcMessage(std::string_view address, const std::string& name, const Vec3& place, const Quat& rotation) {
+inline Bytes vmcMessage(std::string_view address, const std::string& name, const Vec3& position, const Quat& rotation) {
   std::vector<OscArgument> values = {name};
-  for (const double value : {place.x(), place.y(), place.z(), rotation.x(), rotation.y(), rotation.z(), rotation.w()}) {
+  for (const double value :
+       {position.x(), position.y(), position.z(), rotation.x(), rotation.y(), rotation.z(), rotation.w()}) {
     values.emplace_back(static_cast<float>(value));
   }
   return oscMessage(address, values);

@@ -11,7 +11,7 @@ namespace {
 // Of the format: the shortest match, how far back one may lie, the bytes at the end that are literals whatever they
 // are, and those before which the last match has to begin.
 constexpr std::size_t kShortestMatch = 4, kFarthest = 65535, kLastLiterals = 5, kLastMatchStart = 12;
-constexpr std::size_t kMostBytes = 0x7e000000;
+constexpr std::size_t kMaxBytes = 0x7e000000;
 constexpr unsigned kHashBits = 14;
 
 std::uint32_t fourBytes(const std::uint8_t* at) {
@@ -46,15 +46,15 @@ void appendSequence(ByteSpan literals, std::size_t matchLength, std::size_t dist
 }  // namespace
 
 Bytes encodeLz4Block(ByteSpan bytes) {
-  if (bytes.size() > kMostBytes) throw Error(ErrorCode::kLimit, "more than 2 GB in one list cannot be written");
+  if (bytes.size() > kMaxBytes) throw Error(ErrorCode::kLimit, "more than 2 GB in one list cannot be written");
   Bytes out;
-  std::vector<std::uint32_t> lastPlace(std::size_t{1} << kHashBits, 0);  // behind the four bytes of a hash, 0: none
+  std::vector<std::uint32_t> lastOffset(std::size_t{1} << kHashBits, 0);  // behind the four bytes of a hash, 0: none
   std::size_t literalsFrom = 0, at = 0;
   while (at + kLastMatchStart < bytes.size()) {
     const std::uint32_t four = fourBytes(&bytes[at]);
-    std::uint32_t& place = lastPlace[hashOf(four)];
-    const std::size_t known = place;
-    place = static_cast<std::uint32_t>(at + 1);
+    std::uint32_t& index = lastOffset[hashOf(four)];
+    const std::size_t known = index;
+    index = static_cast<std::uint32_t>(at + 1);
     if (known == 0 || at + 1 - known > kFarthest || fourBytes(&bytes[known - 1]) != four) {
       ++at;
       continue;

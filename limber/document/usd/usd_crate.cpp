@@ -290,13 +290,13 @@ class CrateWriter {
 
   // Values out of a table, where they are few enough for that to be smaller.
   static bool appendByTable(const std::vector<float>& values, Bytes& out) {
-    constexpr std::size_t kMostInTable = 1024;  // OpenUSD's
+    constexpr std::size_t kMaxInTable = 1024;  // OpenUSD's
     if (values.size() < kFewestPacked) return false;
     Numbering<std::uint32_t> table;
     std::vector<std::int32_t> numbers;
     for (const float value : values) {
       numbers.push_back(static_cast<std::int32_t>(table.of(bitCast<std::uint32_t>(value + 0.0f))));
-      if (table.things().size() > std::min(values.size() / 4, kMostInTable)) return false;
+      if (table.things().size() > std::min(values.size() / 4, kMaxInTable)) return false;
     }
     out.push_back('t');
     append32(static_cast<std::uint32_t>(table.things().size()), out);
@@ -349,7 +349,7 @@ class CrateWriter {
   }
   static std::uint64_t emptyArray(CrateType type) { return kIsArray | static_cast<std::uint64_t>(type) << 48; }
   std::optional<std::uint64_t> valueRep(const UsdValue& value) {
-    return std::visit([this](const auto& held) -> std::optional<std::uint64_t> { return rep(held); }, value);
+    return std::visit([this](const auto& own) -> std::optional<std::uint64_t> { return rep(own); }, value);
   }
 
   // --- the sections behind the values, their table, and where that is ---

@@ -15,7 +15,7 @@ using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using testing::readCrate;
 
-constexpr std::uint64_t kPlace = 0xffffffffffff;
+constexpr std::uint64_t kOffsetMask = 0xffffffffffff;
 
 UsdStage emptyStage() {
   UsdStage stage;
@@ -28,9 +28,9 @@ UsdStage emptyStage() {
 template <typename Number>
 std::vector<Number> listAt(const Bytes& crate, std::uint64_t rep) {
   std::uint64_t count = 0;
-  std::memcpy(&count, &crate.at(rep & kPlace), 8);
+  std::memcpy(&count, &crate.at(rep & kOffsetMask), 8);
   std::vector<Number> list(count);
-  std::memcpy(list.data(), &crate.at((rep & kPlace) + 8), count * sizeof(Number));
+  std::memcpy(list.data(), &crate.at((rep & kOffsetMask) + 8), count * sizeof(Number));
   return list;
 }
 
@@ -56,8 +56,8 @@ TEST(UsdCrate, HoldsTheTreeOfPrimsAndProperties) {
   EXPECT_EQ(content.kinds.at("/Model/second.size"), 1);
   const auto& size = content.fields.at("/Model/second.size");
   EXPECT_EQ(size.at("default"), 0x4008'0000'3fc0'0000u);  // inlined, of type 8, 1.5
-  EXPECT_EQ(content.tokens[size.at("typeName") & kPlace], "float");
-  EXPECT_EQ(content.fields.at("/Model/first/inner.doubleSided").at("variability") & kPlace, 1u);
+  EXPECT_EQ(content.tokens[size.at("typeName") & kOffsetMask], "float");
+  EXPECT_EQ(content.fields.at("/Model/first/inner.doubleSided").at("variability") & kOffsetMask, 1u);
 }
 
 TEST(UsdCrate, APrimMayHaveANameForUsers) {
@@ -85,10 +85,10 @@ TEST(UsdCrate, ListsOfNumbersLieAtMultiplesOfEightOnce) {
   EXPECT_EQ(valueOf("points") % 8, 0u);
   EXPECT_EQ(valueOf("points") >> 48, 0x8018u);  // an array of type 24
   std::vector<float> numbers(6);
-  std::memcpy(numbers.data(), &crate[(valueOf("points") & kPlace) + 8], 24);
+  std::memcpy(numbers.data(), &crate[(valueOf("points") & kOffsetMask) + 8], 24);
   EXPECT_THAT(numbers, ElementsAre(1, 2, 3, 4, 5, 6));
   EXPECT_EQ(listAt<std::uint16_t>(crate, valueOf("scales"))[0], 0x3c00);  // 1 as a half
-  std::memcpy(numbers.data(), &crate[(valueOf("turns") & kPlace) + 8], 16);
+  std::memcpy(numbers.data(), &crate[(valueOf("turns") & kOffsetMask) + 8], 16);
   EXPECT_THAT(std::vector<float>(numbers.begin(), numbers.begin() + 4), ElementsAre(1, 2, 3, 0.5f));  // w last
   EXPECT_EQ(valueOf("none"), 0x8003'0000'0000'0000u);
 }
@@ -101,7 +101,7 @@ TEST(UsdCrate, FewDifferentNumbersComeOutOfATable) {
   const Bytes crate = usdCrate(stage);
   const std::uint64_t rep = readCrate(crate).fields.at("/Model.weights").at("default");
   EXPECT_EQ(rep >> 48, 0xa008u);  // an array of type 8, compressed
-  testing::ByteReader reader(crate, rep & kPlace);
+  testing::ByteReader reader(crate, rep & kOffsetMask);
   ASSERT_EQ(reader.number(8), 100u);
   ASSERT_EQ(reader.number(1), 't');
   std::vector<float> table(reader.number(4));
@@ -121,7 +121,7 @@ TEST(UsdCrate, SamplesHaveTheirTimes) {
   const CrateContent content = readCrate(crate);
   const std::uint64_t rep = content.fields.at("/Model.weights").at("timeSamples");
   EXPECT_EQ(rep >> 48, 46u);
-  testing::ByteReader reader(crate, rep & kPlace);
+  testing::ByteReader reader(crate, rep & kOffsetMask);
   EXPECT_EQ(reader.number(8), 8u);
   EXPECT_THAT(listAt<double>(crate, reader.number(8)), ElementsAre(0, 12));
   EXPECT_EQ(reader.number(8), 8u);

@@ -10,14 +10,14 @@ namespace limber {
 namespace {
 
 TEST(UsdIntegers, ComeBackAsTheyWere) {
-  constexpr std::int32_t kLeast = std::numeric_limits<std::int32_t>::min(),
-                         kMost = std::numeric_limits<std::int32_t>::max();
+  constexpr std::int32_t kMin = std::numeric_limits<std::int32_t>::min(),
+                         kMax = std::numeric_limits<std::int32_t>::max();
   std::vector<std::int32_t> steps;  // of all widths, and at their limits
   for (const std::int32_t step : {0, 1, -1, 127, -128, 128, -129, 32767, -32768, 32768, -32769}) {
     steps.push_back(steps.empty() ? step : steps.back() + step);
   }
   for (const std::vector<std::int32_t>& values : std::vector<std::vector<std::int32_t>>{
-           {5}, {kMost, kLeast, 0, kLeast, kMost}, std::vector<std::int32_t>(1001, 3), steps}) {
+           {5}, {kMax, kMin, 0, kMin, kMax}, std::vector<std::int32_t>(1001, 3), steps}) {
     EXPECT_EQ(testing::unpackIntegers(packUsdIntegers(values), values.size()), values);
   }
 }

@@ -83,17 +83,17 @@ class MaterialWriter {
   }
 
   // The path of what reads the texture's place on the surface.
-  std::string placeOf(const UsdTexture& texture, const std::string& textureName) {
+  std::string locationOf(const UsdTexture& texture, const std::string& textureName) {
     const std::string primvar = uvPrimvar(texture.uvSet);
     std::string uv = reader("Uv" + primvar.substr(2), "float2", primvar, {});
     if (!texture.transform) return uv;
     const std::string name = textureName + "Place";
-    UsdPrim& place = readers_.emplace_back(shaderOf(name, "UsdTransform2d"));
-    place.connect("float2", "inputs:in", std::move(uv));
-    place.add("float", "inputs:rotation", texture.transform->degrees);
-    place.add("float2", "inputs:scale", texture.transform->scale);
-    place.add("float2", "inputs:translation", texture.transform->translation);
-    place.add("float2", "outputs:result");
+    UsdPrim& transform = readers_.emplace_back(shaderOf(name, "UsdTransform2d"));
+    transform.connect("float2", "inputs:in", std::move(uv));
+    transform.add("float", "inputs:rotation", texture.transform->degrees);
+    transform.add("float2", "inputs:scale", texture.transform->scale);
+    transform.add("float2", "inputs:translation", texture.transform->translation);
+    transform.add("float2", "outputs:result");
     return fmt::format("{}/{}.outputs:result", path_, name);
   }
 
@@ -109,7 +109,7 @@ class MaterialWriter {
     };
     UsdPrim prim = shaderOf(inputName + "Texture", "UsdUVTexture");
     prim.add("asset", "inputs:file", image);
-    prim.connect("float2", "inputs:st", placeOf(use, prim.name));
+    prim.connect("float2", "inputs:st", locationOf(use, prim.name));
     prim.add("token", "inputs:sourceColorSpace", use.isColor ? "sRGB" : "raw");
     prim.add("token", "inputs:wrapS", wrap(sampler.wrapS));
     prim.add("token", "inputs:wrapT", wrap(sampler.wrapT));

@@ -311,13 +311,13 @@ class ModelReader {
 
   // The fewest that step by that much of the model's size or less.
   int decimalsFor(double step) const {
-    constexpr int kMost = 12;
+    constexpr int kMax = 12;
     Box box;
     for (const UsdMesh& mesh : model_.meshes) {
       for (const Vec3f& point : mesh.points) box.add(point.cast<double>());
     }
     int decimals = 0;
-    for (double unit = 1; decimals < kMost && unit > step * box.diagonal(); unit /= 10) ++decimals;
+    for (double unit = 1; decimals < kMax && unit > step * box.diagonal(); unit /= 10) ++decimals;
     return decimals;
   }
 

@@ -104,11 +104,11 @@ void addOverTime(UsdProperty& property, const std::vector<double>& moments,
   float error = 0.5f;  // as rounding of text
   for (int digit = 0; digit < *property.decimals; ++digit) error /= 10;
   constexpr double kSteps = 1e5;  // of a time code: less than a microsecond
-  const bool standsStill = std::all_of(values.begin(), values.end(), [&](const std::vector<Value>& now) {
+  const bool isStationary = std::all_of(values.begin(), values.end(), [&](const std::vector<Value>& now) {
     return std::equal(now.begin(), now.end(), values[0].begin(),
                       [error](const Value& a, const Value& b) { return isBetween(a, b, b, 0, error); });
   });
-  if (standsStill) {
+  if (isStationary) {
     if (hasClip) {
       property.samples.emplace_back(0, values[0]);
     } else {

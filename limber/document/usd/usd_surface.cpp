@@ -49,7 +49,7 @@ UsdUvTransform uvTransform(const JsonView& extension) {
 class SurfaceReader {
  public:
   SurfaceReader(const gltf::Document& document, Index number)
-      : document_(document), material_(document.materials[number]), place_(fmt::format("materials[{}]", number)) {}
+      : document_(document), material_(document.materials[number]), location_(fmt::format("materials[{}]", number)) {}
 
   UsdSurface read() {
     surface_.hasOpacity = material_.alphaMode == "BLEND" || material_.alphaMode == "MASK";
@@ -74,14 +74,14 @@ class SurfaceReader {
   }
 
  private:
-  JsonView extension(const char* name) const { return {extensionOf(material_, name), place_}; }
+  JsonView extension(const char* name) const { return {extensionOf(material_, name), location_}; }
 
   UsdTexture textureAt(Index texture, Index uvSet, const Json* transform) const {
     UsdTexture read;
     read.texture = texture;
     read.uvSet = uvSet;
     if (transform == nullptr) return read;
-    const JsonView view(transform, place_);
+    const JsonView view(transform, location_);
     read.uvSet = static_cast<Index>(std::min<std::size_t>(view.count("texCoord").value_or(uvSet), kNoIndex));
     read.transform = uvTransform(view);
     return read;
@@ -182,12 +182,12 @@ class SurfaceReader {
   // A normal texture's "scale", an occlusion's "strength".
   float strengthOf(const gltf::TextureUse& use, const char* key) const {
     if (!use.asRead.exists()) return 1;
-    return static_cast<float>(JsonView(&*use.asRead, place_).number(key, 1));
+    return static_cast<float>(JsonView(&*use.asRead, location_).number(key, 1));
   }
 
   const gltf::Document& document_;
   const gltf::Material& material_;
-  std::string place_;
+  std::string location_;
   UsdSurface surface_;
 };
 

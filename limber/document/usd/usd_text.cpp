@@ -77,7 +77,7 @@ class UsdTextWriter {
       out_ += property.targets.size() > 1 ? fmt::format("[{}]", targets) : targets;
     } else if (!std::holds_alternative<std::monostate>(property.value)) {
       out_ += " = ";
-      std::visit([this](const auto& held) { append(held); }, property.value);
+      std::visit([this](const auto& content) { append(content); }, property.value);
     }
     writeMetadata(property);
     out_ += '\n';
@@ -88,7 +88,7 @@ class UsdTextWriter {
     for (const auto& [time, value] : property.samples) {
       out_.append(depth_, ' ');
       fmt::format_to(std::back_inserter(out_), " {}: ", time);
-      std::visit([this](const auto& held) { append(held); }, value);
+      std::visit([this](const auto& content) { append(content); }, value);
       out_ += ",\n";
     }
     line("}");

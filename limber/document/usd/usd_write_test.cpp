@@ -326,11 +326,11 @@ TEST(EncodeUsdz, FilesLieAtMultiplesOf64AndComeBack) {
   ASSERT_EQ(back.size(), 2u);
   EXPECT_EQ(back.at("model.usdc"), files.stage);
   EXPECT_EQ(back.at("image_0.png"), files.images[0].bytes);
-  const auto placeOf = [&](const auto& bytes) {
+  const auto offsetOf = [&](const auto& bytes) {
     return std::search(archive.begin(), archive.end(), bytes.begin(), bytes.end()) - archive.begin();
   };
-  EXPECT_EQ(placeOf(files.stage) % 64, 0);
-  EXPECT_EQ(placeOf(files.images[0].bytes) % 64, 0);
+  EXPECT_EQ(offsetOf(files.stage) % 64, 0);
+  EXPECT_EQ(offsetOf(files.images[0].bytes) % 64, 0);
   EXPECT_EQ(encodeUsdz(files), archive);
 }
 

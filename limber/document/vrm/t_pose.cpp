@@ -24,7 +24,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kSamePlace = 1e-6;  // of the skeleton's size
+constexpr double kSamePosition = 1e-6;  // of the skeleton's size
 // How far from a T-pose they are that still rest in one; the neutral pose may stoop by 25 degrees.
 constexpr double kLimbsOff = 20 * kPi / 180, kTrunkOff = 30 * kPi / 180;  // radians
 
@@ -52,7 +52,7 @@ std::optional<Index> jointOf(std::span<const HumanoidJoint> bones, std::string_v
 Pose poseOf(const NeutralPose& neutral, const Skeleton& skeleton, const Pose& resting) {
   const Quat back = neutral.toBody.conjugate();
   Box box;
-  for (const Vec3& place : neutral.positions) box.add(place);
+  for (const Vec3& position : neutral.positions) box.add(position);
   Pose pose = resting;
   std::vector<Affine> globals;
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
@@ -62,7 +62,7 @@ Pose poseOf(const NeutralPose& neutral, const Skeleton& skeleton, const Pose& re
     local.rotation = (above.conjugate() * back * neutral.rotations[j]).normalized();
     const Affine parentGlobal = parent ? globals[*parent] : Affine::Identity();
     const Vec3 wanted = back * neutral.positions[j];
-    if ((parentGlobal * local.translation - wanted).norm() > kSamePlace * box.diagonal()) {
+    if ((parentGlobal * local.translation - wanted).norm() > kSamePosition * box.diagonal()) {
       local.translation = parentGlobal.inverse(Eigen::Affine) * wanted;
     }
     globals.push_back(parentGlobal * local.toAffine());
@@ -81,8 +81,8 @@ class BoneAimer {
   void aim(std::string_view from, std::string_view to, const Vec3& direction, bool levelOnly = false) {
     const std::optional<Index> joint = jointOf(bones_, from), end = jointOf(bones_, to);
     if (!joint || !end) return;
-    const std::vector<Vec3> places = posePositions(skeleton_, tPose_.pose);
-    Vec3 now = tPose_.toVrm * (places[*end] - places[*joint]), wanted = direction;
+    const std::vector<Vec3> positions = posePositions(skeleton_, tPose_.pose);
+    Vec3 now = tPose_.toVrm * (positions[*end] - positions[*joint]), wanted = direction;
     if (levelOnly) now.y() = 0;
     if (now.norm() < 1e-9 || angleBetween(shortestRotation(now, wanted), Quat::Identity()) < 1e-9) return;
     turn(*joint, tPose_.toVrm.conjugate() * shortestRotation(now, wanted) * tPose_.toVrm);
@@ -138,10 +138,10 @@ std::vector<bool> footJoints(const Skeleton& skeleton, std::span<const HumanoidJ
 
 void putOnGround(TPose& tPose, const Skeleton& skeleton, std::span<const HumanoidJoint> bones) {
   const std::vector<bool> isFoot = footJoints(skeleton, bones);
-  const std::vector<Vec3> places = posePositions(skeleton, tPose.pose);
+  const std::vector<Vec3> positions = posePositions(skeleton, tPose.pose);
   double lowest = std::numeric_limits<double>::infinity();
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
-    if (isFoot[j]) lowest = std::min(lowest, (tPose.toVrm * places[j]).y());
+    if (isFoot[j]) lowest = std::min(lowest, (tPose.toVrm * positions[j]).y());
   }
   lift(tPose, skeleton, bones, -lowest);
 }
@@ -155,15 +155,15 @@ void putOnGround(TPose& tPose, const Asset& asset, const AssetSkeleton& rig, std
   std::optional<double> lowest;
   for (Index v = 0; v < geometry.positions.size() && weights.slots > 0; ++v) {
     const auto joints = weights.jointsOf(v);
-    const auto shares = weights.weightsOf(v);  // strongest first
-    if (!(shares[0] > 0) || !isFoot[joints[0]]) continue;
-    Vec3 place = Vec3::Zero();
+    const auto influences = weights.weightsOf(v);  // strongest first
+    if (!(influences[0] > 0) || !isFoot[joints[0]]) continue;
+    Vec3 position = Vec3::Zero();
     double sum = 0;
     for (Index slot = 0; slot < weights.slots; ++slot) {
-      place += shares[slot] * (skin[joints[slot]] * geometry.positions[v].cast<double>());
-      sum += shares[slot];
+      position += influences[slot] * (skin[joints[slot]] * geometry.positions[v].cast<double>());
+      sum += influences[slot];
     }
-    const double height = (tPose.toVrm * place).y() / sum;
+    const double height = (tPose.toVrm * position).y() / sum;
     if (!lowest || height < *lowest) lowest = height;
   }
   if (!lowest) return putOnGround(tPose, rig.skeleton, bones);
@@ -178,12 +178,12 @@ Quat toVrmOf(std::string_view extension) {
 bool pointsAsTPose(const gltf::Document& document, const char* extension) {
   const Quat toVrm = toVrmOf(extension);
   const SceneGraph graph = readSceneGraph(document);
-  std::map<std::string_view, Vec3, std::less<>> places;
+  std::map<std::string_view, Vec3, std::less<>> positions;
   for (const HumanoidNode& node : humanoidNodes(document, extension)) {
-    places[node.bone] = toVrm * graph.world[node.node].translation();
+    positions[node.bone] = toVrm * graph.world[node.node].translation();
   }
   const auto points = [&](std::string_view from, std::string_view to, const Vec3& direction, double most) {
-    const Vec3 bone = places.at(to) - places.at(from);
+    const Vec3 bone = positions.at(to) - positions.at(from);
     return bone.dot(direction) >= std::cos(most) * bone.norm();
   };
   if (!points("hips", "head", Vec3::UnitY(), kTrunkOff)) return false;
@@ -244,12 +244,12 @@ TPose vrmRestPose(const Asset& asset, const AssetSkeleton& rig, std::span<const 
 }
 
 TPose vrmRestPose(const Motion& motion, std::span<const HumanoidJoint> bones) {
-  constexpr int kMostPoses = 100;  // of each clip, evenly spaced
+  constexpr int kMaxPoses = 100;  // of each clip, evenly spaced
   std::vector<Pose> poses;
   for (const Clip& clip : motion.clips) {
-    for (int i = 0; i < kMostPoses; ++i) {
+    for (int i = 0; i < kMaxPoses; ++i) {
       poses.push_back(restPose(motion.skeleton));
-      sampleClip(clip, clip.duration() * i / kMostPoses, poses.back());
+      sampleClip(clip, clip.duration() * i / kMaxPoses, poses.back());
     }
   }
   TPose tPose = tPoseOf(motion.skeleton, poses, bones);

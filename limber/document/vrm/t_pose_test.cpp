@@ -51,9 +51,9 @@ TEST(VrmRestPose, OfAPosedVrmIsATPose) {
   pose.locals[rig.skeleton.find("mixamorig:LeftForeArm").value()].rotation = testing::turn(Vec3::UnitY(), 60);
   writeNodePose(asset, rig, pose);
   const std::vector<Vec3> expected = posePositions(rig.skeleton, standing),
-                          places = posePositions(rig.skeleton, vrmRestPose(asset, rig, bones).pose);
+                          positions = posePositions(rig.skeleton, vrmRestPose(asset, rig, bones).pose);
   for (const HumanoidJoint& bone : bones) {
-    EXPECT_LT((places[bone.joint] - expected[bone.joint]).norm(), 1e-6) << bone.bone;
+    EXPECT_LT((positions[bone.joint] - expected[bone.joint]).norm(), 1e-6) << bone.bone;
   }
 }
 

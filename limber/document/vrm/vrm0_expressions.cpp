@@ -50,7 +50,7 @@ const char* partnerOf(const std::array<NamePair, Size>& pairs, std::string_view 
   return found == pairs.end() ? nullptr : found->second;
 }
 
-constexpr std::size_t kMostBinds = 1'000'000;  // many nodes that show one mesh multiply a small file
+constexpr std::size_t kMaxBinds = 1'000'000;  // many nodes that show one mesh multiply a small file
 
 // In 0.x a bind names a mesh, in 1.0 each node that shows it; weights go up to 100 there.
 Json morphBinds(const gltf::Document& document, const std::vector<std::vector<Index>>& nodesOfMesh, const Json& group,
@@ -63,7 +63,7 @@ Json morphBinds(const gltf::Document& document, const std::vector<std::vector<In
     const std::optional<Index> shape = indexIn(bind, "index", shapes);
     if (!shape) continue;
     count += nodesOfMesh[*mesh].size();
-    if (count > kMostBinds) throw Error(ErrorCode::kLimit, "has more than a million changes of shapes by expressions");
+    if (count > kMaxBinds) throw Error(ErrorCode::kLimit, "has more than a million changes of shapes by expressions");
     for (const Index n : nodesOfMesh[*mesh]) {
       binds.push_back({{"node", n}, {"index", *shape}, {"weight", numberIn(bind, "weight", 100) / 100}});
     }
@@ -77,16 +77,16 @@ void addMaterialBinds(const std::map<std::string, Index>& materials, const Json&
   for (const Json& value : listIn(group, "materialValues")) {
     const std::string name = textIn(value, "materialName"), property = textIn(value, "propertyName");
     const char* color = partnerOf(kColors, property);
-    const bool isPlace = property == "_MainTex_ST";
-    unknown += color == nullptr && !isPlace ? 1 : 0;
-    const std::vector<double> numbers =
-        numbersIn(value, "targetValue", isPlace ? std::vector<double>{1, 1, 0, 0} : std::vector<double>{0, 0, 0, 1});
+    const bool isTextureTransform = property == "_MainTex_ST";
+    unknown += color == nullptr && !isTextureTransform ? 1 : 0;
+    const std::vector<double> numbers = numbersIn(
+        value, "targetValue", isTextureTransform ? std::vector<double>{1, 1, 0, 0} : std::vector<double>{0, 0, 0, 1});
     const auto found = materials.find(name);
     if (found == materials.end()) continue;
     const Index m = found->second;
     if (color != nullptr) {
       expression["materialColorBinds"].push_back({{"material", m}, {"type", color}, {"targetValue", numbers}});
-    } else if (isPlace) {  // Unity's v grows upwards
+    } else if (isTextureTransform) {  // Unity's v grows upwards
       const Json scale = {numbers[0], numbers[1]}, offset = {numbers[2], 1 - numbers[3] - numbers[1]};
       expression["textureTransformBinds"].push_back({{"material", m}, {"scale", scale}, {"offset", offset}});
     }

@@ -16,8 +16,8 @@ namespace {
 
 constexpr const char *kMtoon = "VRMC_materials_mtoon", *kUnlit = "KHR_materials_unlit",
                      *kTransform = "KHR_texture_transform";
-constexpr double kGamma = 2.2;       // colours of 0.x are written as screens show them
-constexpr int kMostQueueOffset = 9;  // of VRMC_materials_mtoon
+constexpr double kGamma = 2.2;      // colours of 0.x are written as screens show them
+constexpr int kMaxQueueOffset = 9;  // of VRMC_materials_mtoon
 
 // A number as short as single precision says it, the same natively and in WebAssembly.
 double shown(double value) {
@@ -82,9 +82,9 @@ class MaterialConverter {
     if (!isTransparent(*source_) || queue < 0) return 0;
     const bool depth = writesDepth(*source_);
     const std::set<double>& all = queues_[depth];
-    const auto place = static_cast<int>(std::distance(all.begin(), all.find(queue)));
-    if (depth) return std::min(place, kMostQueueOffset);
-    return std::max(place - static_cast<int>(all.size()) + 1, -kMostQueueOffset);
+    const auto placement = static_cast<int>(std::distance(all.begin(), all.find(queue)));
+    if (depth) return std::min(placement, kMaxQueueOffset);
+    return std::max(placement - static_cast<int>(all.size()) + 1, -kMaxQueueOffset);
   }
 
   Json colorOf(const char* key, const std::vector<double>& byDefault) const {
@@ -101,20 +101,20 @@ class MaterialConverter {
     if (!index) return std::nullopt;
     gltf::TextureUse use;
     use.index = *index;
-    if (const Json place = transform(); !place.is_null()) use.extensions.change()[kTransform] = place;
+    if (const Json placement = transform(); !placement.is_null()) use.extensions.change()[kTransform] = placement;
     return use;
   }
   Json transform() {
-    const std::vector<double> place = vector("_MainTex", {0, 0, 1, 1});
-    if (place == std::vector<double>{0, 0, 1, 1}) return nullptr;
+    const std::vector<double> placement = vector("_MainTex", {0, 0, 1, 1});
+    if (placement == std::vector<double>{0, 0, 1, 1}) return nullptr;
     declareExtension(document_, kTransform);
-    return {{"offset", {place[0], 1 - place[3] - place[1]}}, {"scale", {place[2], place[3]}}};
+    return {{"offset", {placement[0], 1 - placement[3] - placement[1]}}, {"scale", {placement[2], placement[3]}}};
   }
   void addTexture(Json& mtoon, const char* name, const char* key) {
     const std::optional<Index> index = textureIndex(key);
     if (!index) return;
     Json use = {{"index", *index}};
-    if (Json place = transform(); !place.is_null()) use["extensions"] = {{kTransform, std::move(place)}};
+    if (Json placement = transform(); !placement.is_null()) use["extensions"] = {{kTransform, std::move(placement)}};
     mtoon[name] = std::move(use);
   }
 

@@ -113,11 +113,11 @@ class SpringMaker {
 
   // A node behind the chain's last, in the direction in which that lies from its own parent.
   std::optional<Index> addTail(Index last) {
-    const Vec3 way = nodeTransform(asset_.document.nodes[last]).translation();
-    if (!(way.norm() > 0) || !asset_.document.nodes[last].children.empty()) return std::nullopt;
+    const Vec3 displacement = nodeTransform(asset_.document.nodes[last]).translation();
+    if (!(displacement.norm() > 0) || !asset_.document.nodes[last].children.empty()) return std::nullopt;
     gltf::Node tail;
     if (!asset_.document.nodes[last].name.empty()) tail.name = asset_.document.nodes[last].name + "_end";
-    setNodeTransform(tail, Affine(Eigen::Translation3d(kTail * way.normalized())), false);
+    setNodeTransform(tail, Affine(Eigen::Translation3d(kTail * displacement.normalized())), false);
     const Index number = addElement(asset_.document.nodes, std::move(tail));
     asset_.document.nodes[last].children = {number};
     return number;

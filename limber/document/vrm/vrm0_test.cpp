@@ -130,8 +130,8 @@ TEST(Vrm0, FacesTheOtherWayAndNamesItsBonesAnew) {
   EXPECT_THAT(asset.document.extensionsUsed,
               ElementsAre("VRMC_springBone", "VRMC_materials_mtoon", "KHR_materials_unlit", "VRMC_vrm"));
   EXPECT_EQ(extensionOf(asset.document, "VRM"), nullptr);
-  EXPECT_GT(testing::bonePlace(asset, "leftHand").x(), 0.5);
-  EXPECT_GT(testing::bonePlace(asset, "leftToes").z(), testing::bonePlace(asset, "leftFoot").z());
+  EXPECT_GT(testing::bonePosition(asset, "leftHand").x(), 0.5);
+  EXPECT_GT(testing::bonePosition(asset, "leftToes").z(), testing::bonePosition(asset, "leftFoot").z());
   const Json& bones = extensionOf(asset.document, "VRMC_vrm")->at("humanoid").at("humanBones");
   EXPECT_EQ(bones.size(), 24u);
   EXPECT_EQ(bones["leftThumbMetacarpal"]["node"], old.braid);
@@ -250,10 +250,10 @@ TEST(Vrm0, AnOldAvatarIsWrittenAsANewOne) {
 TEST(Vrm0, OddMembersBreakNothing) {
   const OldAvatar old = oldAvatar();
   const std::vector<Json> odd = {Json(), Json(1e30), Json("text"), Json::array({Json::array(), 3})};
-  std::vector<Json::json_pointer> places;
+  std::vector<Json::json_pointer> locations;
   const std::function<void(const Json&, const Json::json_pointer&)> walk = [&](const Json& value,
                                                                                const Json::json_pointer& at) {
-    places.push_back(at);
+    locations.push_back(at);
     if (value.is_object()) {
       for (const auto& [key, inner] : value.items()) walk(inner, at / key);
     } else if (value.is_array()) {
@@ -261,11 +261,11 @@ TEST(Vrm0, OddMembersBreakNothing) {
     }
   };
   walk(old.vrm, Json::json_pointer());
-  for (const Json::json_pointer& place : places) {
+  for (const Json::json_pointer& location : locations) {
     for (const Json& value : odd) {
       Asset asset = old.asset.clone();
       Json vrm = old.vrm;
-      vrm[place] = value;
+      vrm[location] = value;
       changeExtension(asset.document, "VRM") = std::move(vrm);
       try {
         upgradeVrm0(asset);

@@ -84,9 +84,9 @@ void takeHipsThatCarryLegs(const Skeleton& skeleton, std::vector<HumanoidJoint>&
   if (carriesLegs(hips)) return;
   const std::optional<Index> above = nearestAbove(skeleton, hips, carriesLegs);
   if (!above) return;
-  const std::vector<Vec3> places = restPositions(skeleton);
-  const double thigh = (places[found["leftLowerLeg"]->joint] - places[found["leftUpperLeg"]->joint]).norm();
-  if ((places[*above] - places[hips]).norm() < kNear * thigh) found["hips"]->joint = *above;
+  const std::vector<Vec3> positions = restPositions(skeleton);
+  const double thigh = (positions[found["leftLowerLeg"]->joint] - positions[found["leftUpperLeg"]->joint]).norm();
+  if ((positions[*above] - positions[hips]).norm() < kNear * thigh) found["hips"]->joint = *above;
 }
 
 bool isBelow(std::string_view bone, std::string_view above) {

@@ -41,8 +41,8 @@ bool isPosed(const Asset& asset, const AssetSkeleton& rig, std::span<const Human
     });
   };
   if (isLike(rest)) return false;
-  Warnings told;  // by whoever reads them for their own sake
-  const std::vector<Clip> clips = readClips(asset, rig, told);
+  Warnings warnings;  // by whoever reads them for their own sake
+  const std::vector<Clip> clips = readClips(asset, rig, warnings);
   return std::none_of(clips.begin(), clips.end(), [&](const Clip& clip) {
     Pose first = rest;
     sampleClip(clip, 0, first);
@@ -65,10 +65,10 @@ Json standInTPose(Asset& asset, bool isVrm) {
   }
   const TPose tPose = madeTPose(asset, rig, bones);
   setNodePose(asset, rig, tPose.pose);
-  constexpr double kFacesFront = 1e-6, kTold = 0.02;  // radians
+  constexpr double kFacesFront = 1e-6, kReported = 0.02;  // radians
   const double turn = angleBetween(tPose.toVrm, Quat::Identity());
   if (turn > kFacesFront) turnScene(asset, tPose.toVrm, "facing_front");
-  if (turn > kTold && !asset.document.animations.empty()) {
+  if (turn > kReported && !asset.document.animations.empty()) {
     asset.warnings.add("vrm-turned", fmt::format("a VRM faces +Z: clips are turned by {:.0f} degrees with the model",
                                                  turn * 180 / kPi));
   }

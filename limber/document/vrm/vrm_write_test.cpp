@@ -15,7 +15,7 @@ namespace limber {
 namespace {
 
 using testing::avatarOf;
-using testing::bonePlace;
+using testing::bonePosition;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using testing::mixamoPerson;
@@ -27,12 +27,12 @@ const Json& vrmOf(const Asset& asset) {
 
 void expectTPose(const Asset& asset) {
   for (const auto& [side, sign] : {std::pair<std::string, double>("left", 1.0), {"right", -1.0}}) {
-    const Vec3 shoulder = bonePlace(asset, side + "UpperArm"), hand = bonePlace(asset, side + "Hand");
+    const Vec3 shoulder = bonePosition(asset, side + "UpperArm"), hand = bonePosition(asset, side + "Hand");
     EXPECT_NEAR((hand - shoulder).normalized().x(), sign, 1e-6) << side;
     EXPECT_NEAR((hand - shoulder).norm(), 0.51, 1e-6) << side;  // as long as it was
-    const Vec3 hip = bonePlace(asset, side + "UpperLeg"), foot = bonePlace(asset, side + "Foot");
+    const Vec3 hip = bonePosition(asset, side + "UpperLeg"), foot = bonePosition(asset, side + "Foot");
     EXPECT_NEAR((foot - hip).normalized().y(), -1, 1e-6) << side;
-    EXPECT_GT(bonePlace(asset, side + "Toes").z(), foot.z()) << side;
+    EXPECT_GT(bonePosition(asset, side + "Toes").z(), foot.z()) << side;
   }
 }
 
@@ -115,13 +115,13 @@ TEST(MakeVrm, LegsThatHangBesideTheBodyHangOnIt) {
   clip.name = "squat";
   const Index hips = motion.skeleton.find("mixamorig:Hips").value(),
               leg = motion.skeleton.find("mixamorig:LeftUpLeg").value();
-  const Vec3f place = motion.skeleton.joints[leg].rest.translation.cast<float>();
+  const Vec3f position = motion.skeleton.joints[leg].rest.translation.cast<float>();
   clip.rotations.push_back({hips,
                             Interpolation::kLinear,
                             {0, 1},
                             {Eigen::Quaternionf::Identity(), testing::turn(Vec3(1, 2, 0), 170).cast<float>()}});
   clip.translations.push_back({hips, Interpolation::kLinear, {0, 1}, {Vec3f(0, 0.0095f, 0), Vec3f(0, 0.005f, 0.001f)}});
-  clip.translations.push_back({leg, Interpolation::kLinear, {0, 1}, {place, place - Vec3f(0, 0.0045f, 0)}});
+  clip.translations.push_back({leg, Interpolation::kLinear, {0, 1}, {position, position - Vec3f(0, 0.0045f, 0)}});
   motion.clips.push_back(clip);
   Asset asset = avatarOf(motion);
   makeVrm(asset);

@@ -26,16 +26,16 @@ namespace limber {
 
 namespace {
 
-constexpr double kRate = 60;           // a second, between keys where a bone turns otherwise than evenly
-constexpr double kSameTurn = 1e-7;     // radians
-constexpr double kBeforeStep = 1e-4;   // seconds
-constexpr double kMostBetween = 3600;  // moments between two keys, however far apart
-constexpr double kLostPlace = 1e-3;    // of the skeleton's size: what keys 60 times a second miss between them
+constexpr double kRate = 60;            // a second, between keys where a bone turns otherwise than evenly
+constexpr double kSameTurn = 1e-7;      // radians
+constexpr double kBeforeStep = 1e-4;    // seconds
+constexpr double kMaxBetween = 3600;    // moments between two keys, however far apart
+constexpr double kLostPosition = 1e-3;  // of the skeleton's size: what keys 60 times a second miss between them
 
 // A skeleton's joints at one moment, in VRM's space: how far each is turned from its rest pose, and where it is.
 struct Moment {
   std::vector<Quat> turns;
-  std::vector<Vec3> places;
+  std::vector<Vec3> positions;
 };
 
 std::vector<Quat> rotationsOf(const Skeleton& skeleton, const Pose& pose) {
@@ -76,21 +76,21 @@ class AnimationMaker {
     for (const ExpressionTrack& expression : expressions) addExpression(expression, extension);
     changeExtension(document, kVrmAnimationName) = std::move(extension);
     declareExtension(document, kVrmAnimationName);
-    tellOfLostPlaces();
+    warnOfLostPositions();
     return std::move(asset_);
   }
 
  private:
   // Nodes are numbered as bones are.
   void addBones() {
-    const std::vector<Vec3> places = posePositions(skeleton_, rest_.pose);
+    const std::vector<Vec3> positions = posePositions(skeleton_, rest_.pose);
     gltf::Document& document = asset_.document;
     for (std::size_t b = 0; b < bones_.size(); ++b) {
-      Vec3 place = rest_.toVrm * places[bones_[b].joint];
-      if (parents_[b]) place -= rest_.toVrm * places[bones_[*parents_[b]].joint];
+      Vec3 position = rest_.toVrm * positions[bones_[b].joint];
+      if (parents_[b]) position -= rest_.toVrm * positions[bones_[*parents_[b]].joint];
       gltf::Node node;
       node.name = bones_[b].bone;
-      setNodeTransform(node, Affine(Eigen::Translation3d(place)), false);
+      setNodeTransform(node, Affine(Eigen::Translation3d(position)), false);
       const Index number = addElement(document.nodes, std::move(node));
       if (parents_[b]) {
         document.nodes[*parents_[b]].children.push_back(number);
@@ -132,7 +132,7 @@ class AnimationMaker {
           if (to - kBeforeStep > from) times.insert(static_cast<float>(to - kBeforeStep));
           continue;
         }
-        const double steps = std::min(std::ceil((to - from) * kRate), kMostBetween);
+        const double steps = std::min(std::ceil((to - from) * kRate), kMaxBetween);
         for (int i = 1; i < steps; ++i) times.insert(static_cast<float>(from + (to - from) * i / steps));
       }
     }
@@ -181,14 +181,14 @@ class AnimationMaker {
     for (const float time : all) {
       sampleClip(clip_, time, pose);
       const std::vector<Quat> rotations = rotationsOf(skeleton_, pose);
-      const std::vector<Vec3> places = posePositions(skeleton_, pose);
+      const std::vector<Vec3> positions = posePositions(skeleton_, pose);
       Moment moment;
       for (const HumanoidJoint& bone : bones_) {
         moment.turns.push_back(
             (rest_.toVrm * rotations[bone.joint] * restRotations_[bone.joint].conjugate() * rest_.toVrm.conjugate())
                 .normalized());
       }
-      moment.places.push_back(rest_.toVrm * places[bones_[0].joint]);
+      moment.positions.push_back(rest_.toVrm * positions[bones_[0].joint]);
       moments_.emplace(time, std::move(moment));
     }
   }
@@ -213,18 +213,18 @@ class AnimationMaker {
       for (int i = 0; i < 4; ++i) turns.push_back(static_cast<float>(turn.coeffs()[i]));
     }
     if (turnsAtAll) addChannel(static_cast<Index>(b), "rotation", times, turns, 4, keys.interpolation);
-    if (b == 0) addHipsWay();
+    if (b == 0) addHipsTranslation();
   }
 
-  void addHipsWay() {
+  void addHipsTranslation() {
     Keys keys = hipsKeys_;
     if (keys.times.empty()) keys.times.insert(0);
-    std::vector<float> times, places;
+    std::vector<float> times, positions;
     for (const float time : keys.times) {
       times.push_back(time);
-      for (int i = 0; i < 3; ++i) places.push_back(static_cast<float>(moments_.at(time).places[0][i]));
+      for (int i = 0; i < 3; ++i) positions.push_back(static_cast<float>(moments_.at(time).positions[0][i]));
     }
-    addChannel(0, "translation", times, places, 3, keys.interpolation);
+    addChannel(0, "translation", times, positions, 3, keys.interpolation);
   }
 
   // In glTF an expression's weight is where a node of its own is along X.
@@ -270,21 +270,21 @@ class AnimationMaker {
     for (const double seconds : times) {
       sampleClip(clip_, seconds, pose);
       if (!clips.empty()) sampleClip(clips.front(), seconds, shown);
-      const std::vector<Vec3> wanted = posePositions(skeleton_, pose), places = posePositions(made.skeleton, shown);
+      const std::vector<Vec3> wanted = posePositions(skeleton_, pose), positions = posePositions(made.skeleton, shown);
       for (Index j = 0; j < made.skeleton.jointCount(); ++j) {
         const std::size_t bone = made.jointNode[j];
-        const double distance = (places[j] - rest_.toVrm * wanted[bones_[bone].joint]).norm();
+        const double distance = (positions[j] - rest_.toVrm * wanted[bones_[bone].joint]).norm();
         if (distance > largest.distance) largest = {distance, bone, seconds};
       }
     }
     return largest;
   }
 
-  void tellOfLostPlaces() {
+  void warnOfLostPositions() {
     Box box;
-    for (const Vec3& place : posePositions(skeleton_, rest_.pose)) box.add(place);
+    for (const Vec3& position : posePositions(skeleton_, rest_.pose)) box.add(position);
     const Miss largest = largestMiss();
-    if (largest.distance <= kLostPlace * box.diagonal()) return;
+    if (largest.distance <= kLostPosition * box.diagonal()) return;
     asset_.warnings.add(
         "vrma-lengths",
         fmt::format("lengths and scales of bones that change are left out: joints are up to {:.2g} m from where the "

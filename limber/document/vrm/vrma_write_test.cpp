@@ -68,10 +68,10 @@ TEST(VrmAnimation, BonesAreWhereTheClipHasThem) {
     sampleClip(motion.clips[0], seconds, clip);
     sampleClip(back.clips[0], seconds, shown);
     const std::vector<Vec3> expected = posePositions(motion.skeleton, clip),
-                            places = posePositions(back.skeleton, shown);
+                            positions = posePositions(back.skeleton, shown);
     for (const HumanoidJoint& bone : bones) {
       const Index joint = back.skeleton.find(bone.bone).value();
-      EXPECT_LT((places[joint] - expected[bone.joint]).norm(), 1e-5) << bone.bone << " at " << seconds;
+      EXPECT_LT((positions[joint] - expected[bone.joint]).norm(), 1e-5) << bone.bone << " at " << seconds;
     }
   }
 }
@@ -106,8 +106,8 @@ TEST(VrmAnimation, RestsInTPoseWithoutRotations) {
   EXPECT_TRUE(animation.document.meshes.empty());
   for (const gltf::Node& node : animation.document.nodes) EXPECT_FALSE(node.rotation) << node.name;
   const Skeleton back = readBack(animation.clone()).skeleton;
-  const std::vector<Vec3> places = restPositions(back);
-  const auto at = [&](const char* bone) { return places[back.find(bone).value()]; };
+  const std::vector<Vec3> positions = restPositions(back);
+  const auto at = [&](const char* bone) { return positions[back.find(bone).value()]; };
   EXPECT_NEAR((at("leftHand") - at("leftUpperArm")).normalized().x(), 1, 1e-6);
   EXPECT_NEAR((at("rightFoot") - at("rightUpperLeg")).normalized().y(), -1, 1e-6);
 }

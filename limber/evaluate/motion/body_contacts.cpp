@@ -19,7 +19,7 @@ constexpr std::size_t kMoving = 30;  // frames into the pose and back
 constexpr double kFramesPerSecond = 30;
 
 // A place on the surface: along a bone, and about it from ahead (+Z of the bone's joint) to the left (+X), radians.
-struct SurfacePlace {
+struct SurfaceAnchor {
   std::string from, to;
   double along = 0, about = 0;
   double radius = 0;  // over the bone's length; of the trunk over the shoulders' distance
@@ -27,7 +27,7 @@ struct SurfacePlace {
 
 struct ContactGoal {
   std::string side;  // of the hand
-  SurfacePlace place;
+  SurfaceAnchor point;
 };
 
 struct ContactRecipe {
@@ -55,11 +55,11 @@ std::vector<ContactRecipe> recipes() {
            0.7}};
 }
 
-void addJoint(Skeleton& body, const std::string& name, const std::string& parent, const Vec3& place) {
+void addJoint(Skeleton& body, const std::string& name, const std::string& parent, const Vec3& position) {
   Joint joint;
   joint.name = name;
   if (!parent.empty()) joint.parent = body.find(parent);
-  joint.rest.translation = place;
+  joint.rest.translation = position;
   body.joints.push_back(joint);
 }
 
@@ -72,18 +72,18 @@ double shouldersApart(const Skeleton& body) {
   return (rest[jointOf(body, "leftUpperArm")] - rest[jointOf(body, "rightUpperArm")]).norm();
 }
 
-Vec3 placeOf(const SurfacePlace& place, const Skeleton& body, const std::vector<Affine>& globals) {
-  const Index from = jointOf(body, place.from), to = jointOf(body, place.to);
+Vec3 positionOf(const SurfaceAnchor& point, const Skeleton& body, const std::vector<Affine>& globals) {
+  const Index from = jointOf(body, point.from), to = jointOf(body, point.to);
   const Vec3 a = globals[from].translation(), bone = globals[to].translation() - a;
-  const bool ofTrunk = place.from == "hips" || place.from == "chest";
+  const bool ofTrunk = point.from == "hips" || point.from == "chest";
   const double hand =
       kPalm *
       (restPositions(body)[jointOf(body, "leftHand")] - restPositions(body)[jointOf(body, "leftLowerArm")]).norm();
-  const double radius = place.radius * (ofTrunk ? shouldersApart(body) : bone.norm()) + hand;
+  const double radius = point.radius * (ofTrunk ? shouldersApart(body) : bone.norm()) + hand;
   const Quat turn(globals[from].rotation());
-  Vec3 out = turn * Vec3(std::sin(place.about), 0, std::cos(place.about));
+  Vec3 out = turn * Vec3(std::sin(point.about), 0, std::cos(point.about));
   out = (out - out.dot(bone) / bone.squaredNorm() * bone).normalized();
-  return a + place.along * bone + radius * out;
+  return a + point.along * bone + radius * out;
 }
 
 // Elbows down and out, as they are held.
@@ -128,16 +128,16 @@ Pose touching(const Skeleton& body, const ContactRecipe& recipe) {
     pose.locals[0].translation.y() += rest[foot].y() - posed[foot].y();
   }
   for (const ContactGoal& goal : recipe.goals) {
-    reach(body, goal.side, placeOf(goal.place, body, poseGlobals(body, pose)), pose);
+    reach(body, goal.side, positionOf(goal.point, body, poseGlobals(body, pose)), pose);
   }
   return pose;
 }
 
-Pose between(const Pose& one, const Pose& other, double share) {
+Pose between(const Pose& one, const Pose& other, double fraction) {
   Pose pose = one;
   for (std::size_t j = 0; j < pose.locals.size(); ++j) {
-    pose.locals[j].rotation = one.locals[j].rotation.slerp(share, other.locals[j].rotation);
-    pose.locals[j].translation += share * (other.locals[j].translation - one.locals[j].translation);
+    pose.locals[j].rotation = one.locals[j].rotation.slerp(fraction, other.locals[j].rotation);
+    pose.locals[j].translation += fraction * (other.locals[j].translation - one.locals[j].translation);
   }
   return pose;
 }
@@ -206,7 +206,7 @@ PoseSequence contactMotion(const Skeleton& figure, const BodyContact& contact) {
     }
   };
   move(from, to);
-  motion.poses.insert(motion.poses.end(), kHeldFrames, to);
+  motion.poses.insert(motion.poses.end(), kHoldFrames, to);
   move(to, from);
   motion.poses.push_back(from);
   return motion;
@@ -221,14 +221,14 @@ ContactScore scoreContact(const RetargetMethod& method, const BodyContact& conta
     const Skeleton body = contactFigure(shape);
     const RetargetSetup setup(source, body, matchSkeletons(source, body), {}, &motion);
     const PoseSequence result = retargetFrames(method, setup, motion);
-    const std::vector<Affine> globals = poseGlobals(body, result.poses[kMoving + kHeldFrames / 2]);
+    const std::vector<Affine> globals = poseGlobals(body, result.poses[kMoving + kHoldFrames / 2]);
     const std::vector<Vec3> rest = restPositions(body);
     const double height = rest[jointOf(body, "headTop_end")].y();
     for (const ContactGoal& goal : recipe.goals) {
       const Index upper = jointOf(body, goal.side + "UpperArm"), hand = jointOf(body, goal.side + "Hand");
-      const Vec3 shoulder = globals[upper].translation(), place = placeOf(goal.place, body, globals);
-      const double arm = 0.54 * shape.arms, far = (place - shoulder).norm();
-      const double off = (globals[hand].translation() - place).norm() / height;
+      const Vec3 shoulder = globals[upper].translation(), position = positionOf(goal.point, body, globals);
+      const double arm = 0.54 * shape.arms, far = (position - shoulder).norm();
+      const double off = (globals[hand].translation() - position).norm() / height;
       if (far <= arm) {
         ++score.reached;
         score.kept += off < kKept;

@@ -40,7 +40,7 @@ struct ContactScore {
   double farWorst = 0;                 // of the others: from the nearest point that the arm reaches, likewise
 };
 inline constexpr double kKept = 0.02;  // heights
-inline constexpr std::size_t kHeldFrames = 20;
+inline constexpr std::size_t kHoldFrames = 20;
 
 // From the base figure onto all figures.
 ContactScore scoreContact(const RetargetMethod& method, const BodyContact& contact);

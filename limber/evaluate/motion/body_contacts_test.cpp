@@ -19,7 +19,7 @@ TEST(BodyContacts, PosesAreHeld) {
   const Skeleton figure = contactFigure({});
   for (const BodyContact& contact : bodyContacts()) {
     const PoseSequence motion = contactMotion(figure, contact);
-    ASSERT_EQ(motion.poses.size(), 60 + kHeldFrames + 1);
+    ASSERT_EQ(motion.poses.size(), 60 + kHoldFrames + 1);
     const Index hand = figure.find("leftHand").value();
     const auto at = [&](std::size_t f) { return posePositions(figure, motion.poses[f])[hand]; };
     EXPECT_LT((at(32) - at(44)).norm(), 1e-9) << contact.name;

@@ -8,9 +8,9 @@ namespace limber {
 
 namespace {
 
-constexpr double kInsideAbove = 0.5;     // winding number
-constexpr double kStepAcross = 1e-5;     // of the longest side
-constexpr int kMostSurfacesWithin = 64;  // that a ray crosses
+constexpr double kInsideAbove = 0.5;    // winding number
+constexpr double kStepAcross = 1e-5;    // of the longest side
+constexpr int kMaxSurfacesWithin = 64;  // that a ray crosses
 
 }  // namespace
 
@@ -22,7 +22,7 @@ bool BodyInside::contains(const Vec3& point) const {
 
 std::optional<double> BodyInside::exitFrom(const Vec3& point, const Vec3& direction) const {
   double gone = 0;
-  for (int i = 0; i < kMostSurfacesWithin; ++i) {
+  for (int i = 0; i < kMaxSurfacesWithin; ++i) {
     const auto hit = surface_.firstHit(point + gone * direction, direction, std::numeric_limits<double>::infinity());
     if (!hit) return std::nullopt;
     const double at = gone + hit->distance;

@@ -324,7 +324,7 @@ std::string ikScoreTable(std::span<const IkScore> scores) {
       "| --- | --- | ---: | ---: | ---: | ---: | ---: |\n";
   for (const IkScore& score : scores) {
     table += fmt::format("| {} | {} | {:.1f} % | {:.1f} | {:.2f} | {:.1f} | {:.1f} |\n", score.set, score.method,
-                         100 * score.share(), score.iterations, score.restarts, score.medianMicros,
+                         100 * score.fraction(), score.iterations, score.restarts, score.medianMicros,
                          score.percentile99Micros);
   }
   const std::string_view best = bestIkMethodWithLimits(scores);

@@ -58,7 +58,7 @@ struct IkScore {
   double medianMicros = 0, percentile99Micros = 0;  // of one solve, set up and warm
   double worstViolation = 0;                        // of any limit in any answer, radians
 
-  double share() const { return problems == 0 ? 0 : static_cast<double>(solved) / problems; }
+  double fraction() const { return problems == 0 ? 0 : static_cast<double>(solved) / problems; }
 };
 
 struct IkEvaluationOptions {

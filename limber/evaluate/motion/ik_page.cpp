@@ -34,8 +34,8 @@ std::string text(double x, double y, std::string_view words, std::string_view at
 }
 
 // From red over yellow to green, pale enough for dark letters; the scale opens up towards everything solved.
-std::string colorOf(double share) {
-  const double good = share >= 1 ? 1 : 0.9 * share * share;
+std::string colorOf(double fraction) {
+  const double good = fraction >= 1 ? 1 : 0.9 * fraction * fraction;
   const double red = good < 0.5 ? 244 : 244 - (good - 0.5) * 2 * 110;
   const double green = good < 0.5 ? 150 + good * 2 * 70 : 220;
   return fmt::format("rgb({:.0f},{:.0f},140)", red, green);
@@ -44,11 +44,11 @@ std::string colorOf(double share) {
 // A panel with both axes logarithmic.
 struct PlotAxes {
   double left, top, width, height;
-  double leastX = 2.5, mostX = 120, leastY = 0.1, mostY = 1000;
+  double minX = 2.5, maxX = 120, minY = 0.1, maxY = 1000;
 
-  double x(double value) const { return left + width * std::log(value / leastX) / std::log(mostX / leastX); }
+  double x(double value) const { return left + width * std::log(value / minX) / std::log(maxX / minX); }
   double y(double value) const {
-    return top + height * (1 - std::log(std::clamp(value, leastY, mostY) / leastY) / std::log(mostY / leastY));
+    return top + height * (1 - std::log(std::clamp(value, minY, maxY) / minY) / std::log(maxY / minY));
   }
 };
 
@@ -60,7 +60,7 @@ std::string grid(const PlotAxes& axes, std::string_view title) {
         fmt::format("<path d=\"M{0:.1f} {1:.1f}V{2:.1f}\" stroke=\"#dddddd\"/>\n", x, axes.top, axes.top + axes.height);
     svg += text(x, axes.top + axes.height + 16, fmt::format("{}", joints), "text-anchor=\"middle\"");
   }
-  for (double micros = axes.leastY; micros <= axes.mostY * 1.01; micros *= 10) {
+  for (double micros = axes.minY; micros <= axes.maxY * 1.01; micros *= 10) {
     const double y = axes.y(micros);
     svg += fmt::format("<path d=\"M{0:.1f} {1:.1f}H{2:.1f}\" stroke=\"#dddddd\"/>\n", axes.left, y,
                        axes.left + axes.width);
@@ -87,7 +87,7 @@ std::string timeLine(const PlotAxes& axes, std::span<const IkScore> scores, cons
 struct Goal {
   std::string_view what, method, set;
   double wantedMicros;  // 0: a share is wanted
-  double wantedShare;
+  double targetFraction;
   std::string_view elsewhere;
 };
 
@@ -109,9 +109,9 @@ std::string goalTable(std::span<const IkScore> scores) {
     const IkScore* score = findIkScore(scores, goal.method, goal.set);
     if (!score) continue;
     const std::string aim = goal.wantedMicros > 0 ? fmt::format("{} µs", goal.wantedMicros)
-                                                  : fmt::format("{:g} % solved", 100 * goal.wantedShare);
+                                                  : fmt::format("{:g} % solved", 100 * goal.targetFraction);
     table += fmt::format("| {} | {} | {} | {:.2f} µs, {:.1f} % solved | {} |\n", goal.what, goal.method, aim,
-                         score->medianMicros, 100 * score->share(), goal.elsewhere);
+                         score->medianMicros, 100 * score->fraction(), goal.elsewhere);
   }
   return table;
 }
@@ -135,8 +135,8 @@ std::string ikSolvedPlot(std::span<const IkScore> scores) {
       if (!score) continue;
       const double x = kLeft + kWidth * static_cast<double>(m);
       svg += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"{}\"/>\n", x + 1,
-                         y + 1, kWidth - 2, kHeight - 2, colorOf(score->share()));
-      svg += text(x + kWidth / 2, y + 14, fmt::format("{:.1f}", 100 * score->share()), "text-anchor=\"middle\"");
+                         y + 1, kWidth - 2, kHeight - 2, colorOf(score->fraction()));
+      svg += text(x + kWidth / 2, y + 14, fmt::format("{:.1f}", 100 * score->fraction()), "text-anchor=\"middle\"");
     }
   }
   return svg + "</svg>\n";

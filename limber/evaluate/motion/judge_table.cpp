@@ -50,7 +50,7 @@ std::string meanAndWorst(std::span<const RetargetScore> scores, const JudgeColum
 }
 
 // Of all frames together.
-std::string contactShare(std::span<const RetargetScore> scores, const JudgeColumn& column) {
+std::string contactFraction(std::span<const RetargetScore> scores, const JudgeColumn& column) {
   ContactAgreement all;
   for (const RetargetScore& score : scores) {
     if (score.method != column.method || score.heldOut != column.heldOut || !score.verdict) continue;
@@ -125,10 +125,10 @@ std::vector<AnswerScore> scoreAnswers(const RetargetTrial& trial, Progress& prog
     const Motion motion = trial.prepare ? trial.prepare(read) : read;
     const std::vector<KnownAnswer> answers = knownAnswers(motion.skeleton);
     RetargetOptions options;
-    options.characterStands = isCharacter;
+    options.characterOnGround = isCharacter;
     for (const Clip& clip : motion.clips) {
       PoseSequence frames = sampleFrames(motion.skeleton, clip, frameRateOf(clip));
-      if (frames.poses.size() > trial.mostFrames) frames.poses.resize(trial.mostFrames);
+      if (frames.poses.size() > trial.maxFrames) frames.poses.resize(trial.maxFrames);
       if (frames.poses.size() < 5) continue;
       for (const KnownAnswer& answer : answers) {
         if (isCharacter && &answer != &answers.front()) break;
@@ -190,7 +190,7 @@ std::string judgeTable(std::span<const RetargetScore> scores, std::span<const An
   measure("accelerations at contacts, likewise", 2, [](const RetargetVerdict& v) { return v.impact; });
   measure("sliding, heights/s", 3, [](const RetargetVerdict& v) { return v.sliding; });
   measure("the source's own", 3, [](const RetargetVerdict& v) { return v.sourceSliding; });
-  add("contacts, precision and recall, %", [&](const JudgeColumn& column) { return contactShare(scores, column); });
+  add("contacts, precision and recall, %", [&](const JudgeColumn& column) { return contactFraction(scores, column); });
   measure("bone directions against `aligned` where nothing touches, p95, degrees", 1,
           [](const RetargetVerdict& v) { return v.bones95; });
   measure("surface inside the body, %", 2,

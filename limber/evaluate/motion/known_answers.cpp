@@ -65,10 +65,10 @@ Skeleton mirrored(Skeleton body) {
 bool isSymmetric(const Skeleton& body) {
   const std::vector<Vec3> rest = restPositions(body);
   Box box;
-  for (const Vec3& place : rest) box.add(place);
-  return std::all_of(rest.begin(), rest.end(), [&](const Vec3& place) {
+  for (const Vec3& position : rest) box.add(position);
+  return std::all_of(rest.begin(), rest.end(), [&](const Vec3& position) {
     return std::any_of(rest.begin(), rest.end(), [&](const Vec3& other) {
-      return (Vec3(-place.x(), place.y(), place.z()) - other).norm() < kAlike * box.diagonal();
+      return (Vec3(-position.x(), position.y(), position.z()) - other).norm() < kAlike * box.diagonal();
     });
   });
 }

@@ -34,9 +34,9 @@ TEST_P(KnownAnswers, AreGivenOfWhatMovesByItself) {
     motion.poses[f].locals[0].translation.y() += 0.15;
     motion.poses[f].locals[hand].translation *= 1 + 0.01 * static_cast<double>(f % 10);
   }
-  for (const bool stands : {false, true}) {
+  for (const bool isStanding : {false, true}) {
     RetargetOptions options;
-    options.characterStands = stands;
+    options.characterOnGround = isStanding;
     for (const KnownAnswer& answer : knownAnswers(person)) {
       if (answer.change == "reposed") continue;
       EXPECT_LT(errorOfAnswer(findRetargetMethod(GetParam()), person, motion, answer, options), 1e-4 / 1.7)

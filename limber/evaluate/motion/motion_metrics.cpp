@@ -217,13 +217,13 @@ void checkFrames(const PoseSequence& one, const PoseSequence& other) {
 }  // namespace
 
 ShownJoints shownJoints(const Skeleton& original, const PoseSequence& frames, const Quat& toBody) {
-  const auto places = [&](const std::vector<Affine>& globals) {
+  const auto positionsOf = [&](const std::vector<Affine>& globals) {
     std::vector<Vec3> positions;
     for (const Affine& global : globals) positions.push_back(toBody * Vec3(global.translation()));
     return positions;
   };
-  ShownJoints shown{places(restGlobals(original)), {}};
-  for (const Pose& pose : frames.poses) shown.frames.push_back(places(poseGlobals(original, pose)));
+  ShownJoints shown{positionsOf(restGlobals(original)), {}};
+  for (const Pose& pose : frames.poses) shown.frames.push_back(positionsOf(poseGlobals(original, pose)));
   return shown;
 }
 

@@ -17,10 +17,10 @@ constexpr double kSeconds = 1.0 / 60;
 class MotionMetricsOf : public ::testing::Test {
  protected:
   // A person who stands still, moved by `way` in each frame.
-  PoseSequence standing(const Vec3& place, const Vec3& way = Vec3::Zero()) const {
+  PoseSequence standing(const Vec3& position, const Vec3& displacement = Vec3::Zero()) const {
     PoseSequence frames{std::vector<Pose>(40, restPose(person_)), kSeconds};
     for (std::size_t f = 0; f < frames.poses.size(); ++f) {
-      frames.poses[f].locals[hips_].translation += place + static_cast<double>(f) * way;
+      frames.poses[f].locals[hips_].translation += position + static_cast<double>(f) * displacement;
     }
     return frames;
   }
@@ -46,11 +46,11 @@ TEST_F(MotionMetricsOf, TheSameIsPerfect) {
 
 TEST_F(MotionMetricsOf, FeetThatSlideAndSinkDoSoByTheirWay) {
   const PoseSequence still = standing(Vec3::Zero());
-  const Vec3 way(0.0005, 0, 0);  // a frame
-  const MotionMetrics metrics = measureMotion(setup(still), still, standing(Vec3(0, -0.02, 0), way));
+  const Vec3 displacement(0.0005, 0, 0);  // a frame
+  const MotionMetrics metrics = measureMotion(setup(still), still, standing(Vec3(0, -0.02, 0), displacement));
   EXPECT_EQ(metrics.planted, 1);
   EXPECT_EQ(metrics.sourceSliding, 0);
-  EXPECT_NEAR(metrics.sliding * metrics.height, way.x() / kSeconds, 1e-9);
+  EXPECT_NEAR(metrics.sliding * metrics.height, displacement.x() / kSeconds, 1e-9);
   EXPECT_NEAR(metrics.penetration * metrics.height, 0.02, 1e-9);
   EXPECT_EQ(metrics.sourcePenetration, 0);
   EXPECT_EQ(metrics.contactAgreement, 1);

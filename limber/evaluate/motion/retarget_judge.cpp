@@ -15,7 +15,7 @@ constexpr double kNear = 0.13;             // heights: a hand's joint this near 
 constexpr double kAround = 0.1;            // seconds before and after a contact begins or ends
 constexpr double kSlackSeconds = 0.05;     // by which contacts may begin and end elsewhere and still agree
 constexpr double kSeenSeconds = 1.0 / 30;  // to each side of a frame, over which a speed is seen
-constexpr double kPeakShare = 0.999;
+constexpr double kPeakFraction = 0.999;
 constexpr double kStillJerk = 2e-5;  // heights, a third difference: what is smoother counts as this rough
 
 // Of one skeleton, frame by frame.
@@ -43,9 +43,9 @@ double rootMeanSquare(const std::vector<double>& values) {
   return values.empty() ? 0 : std::sqrt(sum / static_cast<double>(values.size()));
 }
 
-double exceededBy(std::vector<double> values, double share) {
+double exceededBy(std::vector<double> values, double fraction) {
   if (values.empty()) return 0;
-  const auto rank = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  const auto rank = values.begin() + static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), rank, values.end());
   return *rank;
 }
@@ -128,7 +128,7 @@ class Judge {
   void judgeSmoothness(RetargetVerdict& verdict) const {
     const std::vector<double> reference = jerks(aligned_), own = jerks(result_);
     verdict.jerk = overReference(rootMeanSquare(own), rootMeanSquare(reference));
-    verdict.jerkPeak = overReference(exceededBy(own, kPeakShare), exceededBy(reference, kPeakShare));
+    verdict.jerkPeak = overReference(exceededBy(own, kPeakFraction), exceededBy(reference, kPeakFraction));
   }
 
   // Of a point, seen from where it is when standing.
@@ -158,8 +158,8 @@ class Judge {
       for (std::size_t f = reach; f + reach < count(); ++f) {
         if (!meant[f - reach] || !meant[f] || !meant[f + reach]) continue;
         const auto speed = [&](const JudgedBody& seen, Index joint) {
-          const Vec3 way = seen.at(f + reach, joint) - seen.at(f - reach, joint);
-          return std::hypot(way.x(), way.z()) / (2 * static_cast<double>(reach) * seconds_);
+          const Vec3 displacement = seen.at(f + reach, joint) - seen.at(f - reach, joint);
+          return std::hypot(displacement.x(), displacement.z()) / (2 * static_cast<double>(reach) * seconds_);
         };
         slid += speed(result_, t);
         sourceSlid += speed(source_, s);

@@ -16,7 +16,7 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kMostVertices = 1500;  // enough for means over many pairs
+constexpr std::size_t kMaxVertices = 1500;  // enough for means over many pairs
 
 struct RatedCharacter {
   std::string name;
@@ -58,7 +58,7 @@ class Scorer {
     for (const Clip& clip : motion.clips) {
       const PlainSkeleton plain(motion.skeleton);
       PoseSequence source = plain.plain(sampleFrames(motion.skeleton, clip, frameRateOf(clip)));
-      if (source.poses.size() > trial_.mostFrames) source.poses.resize(trial_.mostFrames);
+      if (source.poses.size() > trial_.maxFrames) source.poses.resize(trial_.maxFrames);
       if (source.poses.size() < 5) {
         skipped_.add("short", "clips of less than 5 frames left out", clip.name);
         continue;
@@ -78,7 +78,7 @@ class Scorer {
 
   std::optional<double> insideOf(const RatedCharacter& character, const std::vector<Pose>& poses) const {
     if (!character.model || trial_.insideFrames == 0) return std::nullopt;
-    return measureSelfPenetration(*character.model, poses, {trial_.insideFrames, kMostVertices}).mean;
+    return measureSelfPenetration(*character.model, poses, {trial_.insideFrames, kMaxVertices}).mean;
   }
 
   void scoreOn(const Skeleton& skeleton, const PoseSequence& source, const Named& motion,

@@ -28,7 +28,7 @@ struct RetargetTrial {
   std::vector<std::filesystem::path> motions, characters;
   std::function<Motion(Motion)> prepare;  // what is done to a motion before it is used, if anything
   std::vector<std::string> methods;       // empty: all
-  Index mostFrames = 1000;                // of each clip; what comes later is left out
+  Index maxFrames = 1000;                 // of each clip; what comes later is left out
   bool judge = false;                     // with verdicts
   std::size_t insideFrames = 10;          // in which it is seen what of the surface is inside the body; 0: in none
 };

@@ -13,8 +13,8 @@ namespace limber {
 
 namespace {
 
-constexpr double kMoves = 0.1;      // of a vertex's weight
-constexpr double kOnePlace = 1e-3;  // of the extent of all joints
+constexpr double kMoves = 0.1;          // of a vertex's weight
+constexpr double kSamePosition = 1e-3;  // of the extent of all joints
 constexpr std::array<std::string_view, 11> kNoBody = {"end",    "tip",  "leaf", "nub",    "site",   "ear",
                                                       "weapon", "hair", "slot", "breast", "stomach"};
 
@@ -102,9 +102,9 @@ BodyFigure figureOf(const Skeleton& skeleton, const std::vector<bool>& counts) {
   std::vector<std::optional<Index>> above;
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
     if (!counts[j]) continue;
-    const Vec3 place = globals[j].translation();
+    const Vec3 position = globals[j].translation();
     const auto same = std::find_if(figure.joints.begin(), figure.joints.end(), [&](const Vec3& other) {
-      return (other - place).norm() <= kOnePlace * box.longestSide();
+      return (other - position).norm() <= kSamePosition * box.longestSide();
     });
     if (same != figure.joints.end()) {
       kept[j] = static_cast<Index>(same - figure.joints.begin());
@@ -114,7 +114,7 @@ BodyFigure figureOf(const Skeleton& skeleton, const std::vector<bool>& counts) {
     while (parent && !counts[*parent]) parent = skeleton.joints[*parent].parent;
     kept[j] = static_cast<Index>(figure.joints.size());
     above.push_back(parent ? kept[*parent] : std::nullopt);
-    figure.joints.push_back(place);
+    figure.joints.push_back(position);
   }
   const std::vector<Index> tree = treesOf(above);
   std::vector<Index> sizes(tree.size(), 0);

@@ -8,20 +8,20 @@ namespace limber {
 
 namespace {
 
-struct NamedPlace {
+struct NamedPosition {
   const char *name, *parent;
-  Vec3 place;
+  Vec3 position;
 };
 
-Skeleton skeletonOf(std::initializer_list<NamedPlace> joints) {
+Skeleton skeletonOf(std::initializer_list<NamedPosition> joints) {
   Skeleton skeleton;
-  std::vector<Vec3> places;
-  for (const NamedPlace& from : joints) {
+  std::vector<Vec3> positions;
+  for (const NamedPosition& from : joints) {
     Joint joint;
     joint.name = from.name;
     if (*from.parent != 0) joint.parent = skeleton.find(from.parent).value();
-    joint.rest.translation = from.place - (joint.parent ? places[*joint.parent] : Vec3(Vec3::Zero()));
-    places.push_back(from.place);
+    joint.rest.translation = from.position - (joint.parent ? positions[*joint.parent] : Vec3(Vec3::Zero()));
+    positions.push_back(from.position);
     skeleton.joints.push_back(joint);
   }
   return skeleton;

@@ -11,7 +11,7 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kMostSamples = 5000;
+constexpr std::size_t kMaxSamples = 5000;
 constexpr std::size_t kSampleGrain = 64;
 
 double squaredDistance(const Vec3& point, const Bone& bone) {
@@ -34,7 +34,7 @@ std::optional<double> boneCoverage(const SkinnedModel& model, const std::vector<
   const BodyInside body(model.mesh);
   const std::vector<Vec3> normals = outwardNormals(model.mesh);
   const std::vector<double> areas = vertexAreas(model.mesh);
-  const std::size_t step = std::max<std::size_t>(1, (normals.size() + kMostSamples - 1) / kMostSamples);
+  const std::size_t step = std::max<std::size_t>(1, (normals.size() + kMaxSamples - 1) / kMaxSamples);
   const std::size_t samples = (normals.size() + step - 1) / step;
   enum class Seen : char { kNothing, kBare, kCovered };
   std::vector<Seen> seen(samples, Seen::kNothing);

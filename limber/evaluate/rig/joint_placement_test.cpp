@@ -80,9 +80,9 @@ TEST_P(JointPlacementOverTheCatalogue, IsAShare) {
   SkinnedModel model = chainInTube({0.01, 0.02, 0.03});
   model.mesh = GetParam().mesh;
   const JointPlacement placement = measureJointPlacement(model, {true, true, true});
-  for (const double share : {placement.inside, placement.offCenter}) {
-    EXPECT_GE(share, 0);
-    EXPECT_LE(share, 1);
+  for (const double fraction : {placement.inside, placement.offCenter}) {
+    EXPECT_GE(fraction, 0);
+    EXPECT_LE(fraction, 1);
   }
 }
 

@@ -189,10 +189,10 @@ void removeJoints(LabelledSkeleton& body, Random& random) {
   for (const Editable::Node& node : edit.nodes) {
     if (node.parent) ++children[*node.parent];
   }
-  const double share = random.uniform(0.1, 0.5);
+  const double fraction = random.uniform(0.1, 0.5);
   for (std::size_t n = 0; n < edit.nodes.size(); ++n) {
     const Editable::Node& node = edit.nodes[n];
-    if (!node.parent || children[n] != 1 || random.uniform() > share) continue;
+    if (!node.parent || children[n] != 1 || random.uniform() > fraction) continue;
     const Editable::Node& above = edit.nodes[*node.parent];
     const bool isInside = above.label.state == node.label.state;
     const bool isHelper = node.label.state == PartState::kOther || node.label.state == PartState::kLegBase ||

@@ -83,7 +83,7 @@ std::optional<MotionQuality> measureMoving(const SkinnedModel& model, std::span<
   options.deformer = &deformer;
   const SelfPenetration inside = measureSelfPenetration(model, poses, options);
   result.selfPenetration = inside.mean;
-  if (inside.worst > 0) result.mostPenetrating = range[inside.worstFrame].name;
+  if (inside.worst > 0) result.maxPenetrating = range[inside.worstFrame].name;
   return result;
 }
 
@@ -119,7 +119,7 @@ Json motionJson(const MotionQuality& motion) {
   Json json = changeJson(motion.mean);
   json["deformer"] = motion.deformer;
   json["self_penetration"] = motion.selfPenetration;
-  json["most_penetrating"] = motion.mostPenetrating.empty() ? Json(nullptr) : Json(motion.mostPenetrating);
+  json["most_penetrating"] = motion.maxPenetrating.empty() ? Json(nullptr) : Json(motion.maxPenetrating);
   json["poses"] = Json::array();
   for (const PoseChange& one : motion.poses) {
     Json pose = changeJson(one.change);
@@ -141,7 +141,7 @@ std::string motionText(const MotionQuality& motion) {
                                    : std::string("no coordinates"));
   text += fmt::format("volume        {:.1f} % lost\n", 100 * mean.volumeLoss);
   text += fmt::format("inside        {:.1f} % of the vertices go into the body", 100 * motion.selfPenetration);
-  if (!motion.mostPenetrating.empty()) text += fmt::format("; most in \"{}\"", motion.mostPenetrating);
+  if (!motion.maxPenetrating.empty()) text += fmt::format("; most in \"{}\"", motion.maxPenetrating);
   return text + fmt::format("\n              (means over {} poses, by {})\n", motion.poses.size(), motion.deformer);
 }
 

@@ -29,10 +29,10 @@ struct PoseChange {
 };
 
 struct MotionQuality {
-  std::string deformer;         // by which the surface moves
-  SurfaceChange mean;           // over the poses; volumeLoss: those that gain some count as 0
-  double selfPenetration = 0;   // SelfPenetration::mean
-  std::string mostPenetrating;  // the pose in which the most goes inside; empty where nothing does
+  std::string deformer;        // by which the surface moves
+  SurfaceChange mean;          // over the poses; volumeLoss: those that gain some count as 0
+  double selfPenetration = 0;  // SelfPenetration::mean
+  std::string maxPenetrating;  // the pose in which the most goes inside; empty where nothing does
   std::vector<PoseChange> poses;
 };
 

@@ -31,14 +31,14 @@ Index mirrored(const Skeleton& skeleton, Index joint) {
 SkinnedModel capsulePerson() {
   SkinnedModel model;
   model.skeleton = contactFigure({});
-  const std::vector<Vec3> places = restPositions(model.skeleton);
+  const std::vector<Vec3> positions = restPositions(model.skeleton);
   model.weights.slots = 4;
   for (Index j = 0; j < model.skeleton.jointCount(); ++j) {
     const auto parent = model.skeleton.joints[j].parent;
-    if (!parent || (places[j] - places[*parent]).norm() < 0.02) continue;
+    if (!parent || (positions[j] - positions[*parent]).norm() < 0.02) continue;
     // Radii differ so that no vertices of two capsules lie in one place, which would be welded.
     const double radius = 0.03 + 0.0001 * static_cast<double>(std::min(j, mirrored(model.skeleton, j)));
-    limber::testing::addCapsule(model.mesh, places[*parent], places[j], radius);
+    limber::testing::addCapsule(model.mesh, positions[*parent], positions[j], radius);
     while (model.weights.vertexCount() < model.mesh.vertexCount()) {
       model.weights.joints.insert(model.weights.joints.end(), {*parent, 0, 0, 0});
       model.weights.weights.insert(model.weights.weights.end(), {1, 0, 0, 0});
@@ -48,12 +48,12 @@ SkinnedModel capsulePerson() {
 }
 
 // Every vertex follows its joint by so much less, and the root by that.
-SkinnedModel smeared(SkinnedModel model, float share) {
+SkinnedModel smeared(SkinnedModel model, float fraction) {
   for (Index v = 0; v < model.weights.vertexCount(); ++v) {
     const std::size_t first = std::size_t{v} * model.weights.slots;
     if (model.weights.joints[first] == 0) continue;
-    model.weights.weights[first] = 1 - share * static_cast<float>(v % 2);
-    model.weights.weights[first + 1] = share * static_cast<float>(v % 2);
+    model.weights.weights[first] = 1 - fraction * static_cast<float>(v % 2);
+    model.weights.weights[first + 1] = fraction * static_cast<float>(v % 2);
   }
   return model;
 }

@@ -78,8 +78,8 @@ RigDistances distancesOf(const BodyFigure& predicted, const BodyFigure& truth, d
   return d;
 }
 
-std::optional<Vec3> placeOf(std::string_view bone, const std::vector<HumanoidJoint>& named,
-                            const std::vector<Affine>& globals) {
+std::optional<Vec3> positionOf(std::string_view bone, const std::vector<HumanoidJoint>& named,
+                               const std::vector<Affine>& globals) {
   for (const HumanoidJoint& joint : named) {
     if (joint.bone == bone) return Vec3(globals[joint.joint].translation());
   }
@@ -89,7 +89,7 @@ std::optional<Vec3> placeOf(std::string_view bone, const std::vector<HumanoidJoi
 // The extent of the box along the axis that comes nearest to the way from feet to head; its longest side where these
 // are not known.
 double heightOf(const Box& box, const std::vector<HumanoidJoint>& named, const std::vector<Affine>& globals) {
-  const std::optional<Vec3> head = placeOf("head", named, globals), foot = placeOf("leftFoot", named, globals);
+  const std::optional<Vec3> head = positionOf("head", named, globals), foot = positionOf("leftFoot", named, globals);
   if (!head || !foot) return box.longestSide();
   int axis = 0;
   (*head - *foot).cwiseAbs().maxCoeff(&axis);
@@ -101,11 +101,11 @@ void compareNamed(const SkinnedModel& predicted, const SkinnedModel& truth, cons
   const std::vector<Affine> ownGlobals = restGlobals(predicted.skeleton), givenGlobals = restGlobals(truth.skeleton);
   const double height = heightOf(box, given, givenGlobals);
   for (const std::string_view bone : kCompared) {
-    std::optional<Vec3> a = placeOf(bone, own, ownGlobals), b = placeOf(bone, given, givenGlobals);
+    std::optional<Vec3> a = positionOf(bone, own, ownGlobals), b = positionOf(bone, given, givenGlobals);
     if (!a || !b) continue;
     // A trunk of two bones has the second at the chest or at its upper end: artists call either the chest.
-    if (bone == "chest" && !placeOf("upperChest", given, givenGlobals)) {
-      const std::optional<Vec3> upper = placeOf("upperChest", own, ownGlobals);
+    if (bone == "chest" && !positionOf("upperChest", given, givenGlobals)) {
+      const std::optional<Vec3> upper = positionOf("upperChest", own, ownGlobals);
       if (upper && (*upper - *b).norm() < (*a - *b).norm()) a = upper;
     }
     result.named.push_back({std::string(bone), 100 * (*a - *b).norm() / height});
@@ -137,7 +137,7 @@ RigComparison compareRigs(const Asset& predicted, const Asset& truth) {
   return compareRigs(readSkinnedModel(predicted), readSkinnedModel(truth));
 }
 
-double insideShare(const SkinnedModel& model) {
+double insideFraction(const SkinnedModel& model) {
   const WindingNumber winding(model.mesh);
   double inside = 0;
   for (const Affine& global : restGlobals(model.skeleton)) inside += winding.exactAt(global.translation()) > 0.5;

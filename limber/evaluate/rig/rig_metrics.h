@@ -41,6 +41,6 @@ RigComparison compareRigs(const SkinnedModel& predicted, const SkinnedModel& tru
 RigComparison compareRigs(const Asset& predicted, const Asset& truth);
 
 // The share of the joints that lie inside the model's surface: a winding number above a half. Cost: O(#J #F).
-double insideShare(const SkinnedModel& model);
+double insideFraction(const SkinnedModel& model);
 
 }  // namespace limber

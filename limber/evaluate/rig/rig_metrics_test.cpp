@@ -107,7 +107,7 @@ TEST(RigMetrics, CountJointsInside) {
   SkinnedModel model = row({"a", "b", "c"}, {0.1, 0.1, 0.1});
   model.mesh.positions = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 2}};
   model.mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
-  EXPECT_NEAR(insideShare(model), 2.0 / 3, 1e-12);
+  EXPECT_NEAR(insideFraction(model), 2.0 / 3, 1e-12);
 }
 
 }  // namespace limber

@@ -11,13 +11,13 @@ namespace limber {
 namespace {
 
 // An ellipsoid, twice as long in x (from -1 to 1) as in y, and joints at these places.
-SkinnedModel ellipsoid(const std::vector<Vec3>& places) {
+SkinnedModel ellipsoid(const std::vector<Vec3>& positions) {
   SkinnedModel model;
   model.mesh = limber::testing::moved(limber::testing::icosphere(3), {1, 0.5f, 0.7f}, Vec3f::Zero());
-  for (std::size_t i = 0; i < places.size(); ++i) {
+  for (std::size_t i = 0; i < positions.size(); ++i) {
     Joint joint;
     joint.name = "j" + std::to_string(i);
-    joint.rest.translation = places[i];
+    joint.rest.translation = positions[i];
     model.skeleton.joints.push_back(joint);
   }
   return model;

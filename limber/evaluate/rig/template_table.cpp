@@ -43,7 +43,7 @@ bool kindIsRight(const TemplateTrial& trial) {
   return templatesFor(trial.file.kind).empty() ? trial.row.fit.isAbstained : !trial.row.fit.isAbstained && suits(trial);
 }
 
-struct Share {
+struct Fraction {
   std::size_t hits = 0, all = 0;
 
   void add(bool hit) {
@@ -53,13 +53,13 @@ struct Share {
 };
 
 // With the interval of Wilson (1927) in which the share lies by 95 %.
-std::string shareText(const Share& share) {
-  if (share.all == 0) return "-";
+std::string fractionText(const Fraction& fraction) {
+  if (fraction.all == 0) return "-";
   constexpr double kZ = 1.96;  // standard deviations about 95 % of a normal distribution
-  const double n = static_cast<double>(share.all), p = static_cast<double>(share.hits) / n;
+  const double n = static_cast<double>(fraction.all), p = static_cast<double>(fraction.hits) / n;
   const double centre = (p + kZ * kZ / (2 * n)) / (1 + kZ * kZ / n);
   const double half = kZ / (1 + kZ * kZ / n) * std::sqrt(p * (1 - p) / n + kZ * kZ / (4 * n * n));
-  return fmt::format("{} of {} ({:.0f} %; {:.0f} to {:.0f})", share.hits, share.all, 100 * p,
+  return fmt::format("{} of {} ({:.0f} %; {:.0f} to {:.0f})", fraction.hits, fraction.all, 100 * p,
                      100 * std::max(0.0, centre - half), 100 * std::min(1.0, centre + half));
 }
 
@@ -80,7 +80,7 @@ std::string meanOf(const std::vector<double>& values) {
 }
 
 struct Column {
-  Share kind, sure, sureAndWrong;
+  Fraction kind, sure, sureAndWrong;
   std::vector<double> all, templates, handles, named, seconds;
 
   explicit Column(const std::vector<const TemplateTrial*>& trials) {
@@ -111,10 +111,10 @@ std::string summary(std::span<const TemplateTrial> trials, const std::set<std::s
     for (const Column& column : columns) table += fmt::format(" {} |", text(column));
     table += "\n";
   };
-  row("kind told right", [](const Column& c) { return shareText(c.kind); });
-  row("a template is taken", [](const Column& c) { return shareText(c.sure); });
+  row("kind told right", [](const Column& c) { return fractionText(c.kind); });
+  row("a template is taken", [](const Column& c) { return fractionText(c.sure); });
   row(fmt::format("of these wrong (kind, or J2J above {:.0f} %)", kRigIsOff),
-      [](const Column& c) { return shareText(c.sureAndWrong); });
+      [](const Column& c) { return fractionText(c.sureAndWrong); });
   row("J2J without fingers, %, mean (worst)", [](const Column& c) { return meanOf(c.all); });
   row("of templates", [](const Column& c) { return meanOf(c.templates); });
   row("of handles", [](const Column& c) { return meanOf(c.handles); });
@@ -134,14 +134,14 @@ std::string reliability(std::span<const TemplateTrial> trials, const std::set<st
   for (std::size_t bin = 0; bin + 1 < kBins.size(); ++bin) {
     table += fmt::format("| {:.1f} to {:.1f} |", kBins[bin], kBins[bin + 1]);
     for (const std::string& split : splits) {
-      Share share;
+      Fraction fraction;
       for (const TemplateTrial* trial : ofSplit(trials, split)) {
         const bool isLast = bin + 2 == kBins.size();
         if (trial->row.fit.confidence < kBins[bin] || (!isLast && trial->row.fit.confidence >= kBins[bin + 1]))
           continue;
-        share.add(suits(*trial));
+        fraction.add(suits(*trial));
       }
-      table += fmt::format(" {} |", shareText(share));
+      table += fmt::format(" {} |", fractionText(fraction));
     }
     table += "\n";
   }
@@ -149,23 +149,23 @@ std::string reliability(std::span<const TemplateTrial> trials, const std::set<st
 }
 
 std::string confusion(std::span<const TemplateTrial> trials) {
-  std::set<std::string> kinds, told = {"handles"};
+  std::set<std::string> kinds, reported = {"handles"};
   std::map<std::pair<std::string, std::string>, int> counts;
   for (const TemplateTrial& trial : trials) {
     const std::string by = trial.row.fit.isAbstained ? "handles" : std::string(kindOfTemplate(trial.row.fit.likeliest));
     kinds.insert(trial.file.kind);
-    told.insert(by);
+    reported.insert(by);
     ++counts[{trial.file.kind, by}];
   }
   std::string table = "| kind |", rule = "|---|";
-  for (const std::string& by : told) {
+  for (const std::string& by : reported) {
     table += fmt::format(" {} |", by);
     rule += "---|";
   }
   table += "\n" + rule + "\n";
   for (const std::string& kind : kinds) {
     table += fmt::format("| {} |", kind);
-    for (const std::string& by : told) {
+    for (const std::string& by : reported) {
       const auto found = counts.find({kind, by});
       table += found == counts.end() ? " |" : fmt::format(" {} |", found->second);
     }

@@ -22,11 +22,11 @@ Vec3 SplitMix::unitVector() {
   }
 }
 
-Pose randomPose(const Skeleton& skeleton, double mostRadians, SplitMix& random) {
+Pose randomPose(const Skeleton& skeleton, double maxRadians, SplitMix& random) {
   Pose pose = restPose(skeleton);
   for (Transform& local : pose.locals) {
     const Vec3 axis = random.unitVector();
-    const double angle = mostRadians * random.uniform();
+    const double angle = maxRadians * random.uniform();
     local.rotation = (local.rotation * Quat(Eigen::AngleAxisd(angle, axis))).normalized();
   }
   return pose;

@@ -22,6 +22,6 @@ class SplitMix {
 
 // The rest pose with each joint turned, after its rest rotation, about a random axis by an angle even in
 // [0, mostRadians]. Draws an axis, then an angle, joint after joint.
-Pose randomPose(const Skeleton& skeleton, double mostRadians, SplitMix& random);
+Pose randomPose(const Skeleton& skeleton, double maxRadians, SplitMix& random);
 
 }  // namespace limber

@@ -10,7 +10,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kShare = 0.5;             // of the range
+constexpr double kFraction = 0.5;          // of the range
 constexpr double kStraight = 5 * kDegree;  // a limb bent by less does not tell where it bends to
 constexpr double kParallel = 1e-3;         // sine: what points along a direction cannot be turned towards it
 
@@ -53,7 +53,7 @@ constexpr Movement kMovements[] = {
 struct Body {
   const Skeleton& skeleton;
   const Anatomy& anatomy;
-  std::vector<Vec3> places;     // #J, at rest
+  std::vector<Vec3> positions;  // #J, at rest
   std::vector<Quat> rotations;  // #J, of the joints' frames at rest
 };
 
@@ -125,13 +125,13 @@ std::span<const Index> jointsTurned(const Part& part, Turned turned) {
 // before.
 Vec3 partDirection(const Body& body, const Part& part, std::span<const Index> joints) {
   const Index last = part.end && *part.end != joints.front() ? *part.end : joints.back();
-  const Vec3 own = body.places[last] - body.places[joints.front()];
+  const Vec3 own = body.positions[last] - body.positions[joints.front()];
   const auto parent = body.skeleton.joints[joints.front()].parent;
-  return own.norm() > 0 || !parent ? own : Vec3(body.places[joints.front()] - body.places[*parent]);
+  return own.norm() > 0 || !parent ? own : Vec3(body.positions[joints.front()] - body.positions[*parent]);
 }
 
 std::optional<Vec3> bendAxis(const Body& body, const Part& part, const Vec3& lower) {
-  const Vec3 above = part.upper ? Vec3(body.places[*part.middle] - body.places[*part.upper]) : lower;
+  const Vec3 above = part.upper ? Vec3(body.positions[*part.middle] - body.positions[*part.upper]) : lower;
   const double sine = above.cross(lower).norm();
   if (std::atan2(sine, above.dot(lower)) > kStraight) return axisBetween(above, lower);
   const Vec3 front = body.anatomy.axes.front;
@@ -152,7 +152,7 @@ bool movePart(const Body& body, const Part& part, const Movement& movement, Pose
   const std::optional<Vec3> axis = turnAxis(body, part, movement.towards, partDirection(body, part, joints));
   if (!axis) return false;
   const std::size_t count = movement.turned == Turned::kAlong ? joints.size() : 1;
-  const double angle = kShare * movement.degrees * kDegree / static_cast<double>(count);
+  const double angle = kFraction * movement.degrees * kDegree / static_cast<double>(count);
   for (const Index joint : joints.first(count)) turnJoint(body, joint, *axis, angle, pose);
   return true;
 }

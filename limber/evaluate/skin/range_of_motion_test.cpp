@@ -25,8 +25,8 @@ std::vector<RangeOfMotionPose> rangeOf(const Skeleton& skeleton) {
 }
 
 Vec3 directionIn(const Skeleton& skeleton, const Pose& pose, std::string_view from, std::string_view to) {
-  const std::vector<Vec3> places = posePositions(skeleton, pose);
-  return (places[skeleton.find(to).value()] - places[skeleton.find(from).value()]).normalized();
+  const std::vector<Vec3> positions = posePositions(skeleton, pose);
+  return (positions[skeleton.find(to).value()] - positions[skeleton.find(from).value()]).normalized();
 }
 
 double degreesBetween(const Vec3& a, const Vec3& b) {
@@ -70,12 +70,12 @@ TEST(RangeOfMotion, BothSidesAreMirrorImages) {
       continue;
     }
     SCOPED_TRACE(one.name);
-    const std::vector<Vec3> places = posePositions(person, one.pose);
+    const std::vector<Vec3> positions = posePositions(person, one.pose);
     for (Index j = 0; j < person.jointCount(); ++j) {
       const std::string& name = person.joints[j].name;
       if (name.rfind("left", 0) != 0) continue;
-      const Vec3& right = places[person.find("right" + name.substr(4)).value()];
-      EXPECT_NEAR((places[j] - Vec3(-right.x(), right.y(), right.z())).norm(), 0, 1e-9) << name;
+      const Vec3& right = positions[person.find("right" + name.substr(4)).value()];
+      EXPECT_NEAR((positions[j] - Vec3(-right.x(), right.y(), right.z())).norm(), 0, 1e-9) << name;
     }
   }
 }
@@ -84,14 +84,14 @@ TEST(RangeOfMotion, BothSidesAreMirrorImages) {
 TEST(RangeOfMotion, DoesNotDependOnTheJointsFrames) {
   const Skeleton person = vrmPerson();
   Skeleton other = person;
-  const std::vector<Vec3> places = restPositions(person);
+  const std::vector<Vec3> positions = restPositions(person);
   std::vector<Quat> frames;
   for (Index j = 0; j < other.jointCount(); ++j) {
     frames.push_back(Quat(Eigen::AngleAxisd(0.3 * (j % 7), Vec3(1, j % 3, 2).normalized())));
     const auto parent = person.joints[j].parent;
     Transform& local = other.joints[j].rest;
     local.rotation = parent ? Quat(frames[*parent].conjugate() * frames[j]) : frames[j];
-    if (parent) local.translation = frames[*parent].conjugate() * (places[j] - places[*parent]);
+    if (parent) local.translation = frames[*parent].conjugate() * (positions[j] - positions[*parent]);
   }
   const std::vector<RangeOfMotionPose> plain = rangeOf(person), turned = rangeOf(other);
   ASSERT_EQ(plain.size(), turned.size());
@@ -108,9 +108,9 @@ TEST(RangeOfMotion, KneesBendFurtherTheWayThatTheyAreBent) {
   const RangeOfMotionPose* knees = findPose(poses, "knees");
   ASSERT_TRUE(knees);
   const std::vector<Vec3> before = restPositions(dog), after = posePositions(dog, knees->pose);
-  const auto bend = [&](const std::vector<Vec3>& places, const char* a, const char* b, const char* c) {
-    const Vec3& knee = places[dog.find(b).value()];
-    return degreesBetween(knee - places[dog.find(a).value()], places[dog.find(c).value()] - knee);
+  const auto bend = [&](const std::vector<Vec3>& positions, const char* a, const char* b, const char* c) {
+    const Vec3& knee = positions[dog.find(b).value()];
+    return degreesBetween(knee - positions[dog.find(a).value()], positions[dog.find(c).value()] - knee);
   };
   EXPECT_GT(bend(after, "L_Thigh", "L_Calf", "L_Foot"), bend(before, "L_Thigh", "L_Calf", "L_Foot") + 20);
   EXPECT_GT(bend(after, "R_UpperArm", "R_Forearm", "R_Hand"), bend(before, "R_UpperArm", "R_Forearm", "R_Hand") + 20);

@@ -49,7 +49,7 @@ SelfPenetration measureSelfPenetration(const SkinnedModel& model, const std::vec
   ModelPoser poser(skin, *options.deformer);
 
   std::vector<Index> sampled, outside;
-  for (const std::size_t v : evenly(skin.mesh.positions.size(), options.mostVertices)) {
+  for (const std::size_t v : evenly(skin.mesh.positions.size(), options.maxVertices)) {
     sampled.push_back(static_cast<Index>(v));
   }
   std::vector<double> bound;  // winding numbers in bind pose of those outside
@@ -62,16 +62,16 @@ SelfPenetration measureSelfPenetration(const SkinnedModel& model, const std::vec
 
   SelfPenetration result;
   TriMesh posed = skin.mesh;
-  const std::vector<std::size_t> frames = evenly(poses.size(), options.mostFrames);
+  const std::vector<std::size_t> frames = evenly(poses.size(), options.maxFrames);
   for (const std::size_t f : frames) {
     poser.pose(poses[f], posed.positions);
     const std::vector<double> winding = windingOff(posed, outside, kOffSurface * size);
     std::size_t inside = 0;
     for (std::size_t i = 0; i < outside.size(); ++i) inside += winding[i] > kInside && winding[i] - bound[i] > kInside;
-    const double share = static_cast<double>(inside) / static_cast<double>(std::max<std::size_t>(outside.size(), 1));
-    result.mean += share / static_cast<double>(frames.size());
-    if (share <= result.worst) continue;
-    result.worst = share;
+    const double fraction = static_cast<double>(inside) / static_cast<double>(std::max<std::size_t>(outside.size(), 1));
+    result.mean += fraction / static_cast<double>(frames.size());
+    if (fraction <= result.worst) continue;
+    result.worst = fraction;
     result.worstFrame = f;
   }
   return result;

@@ -10,8 +10,8 @@
 namespace limber {
 
 struct SelfPenetrationOptions {
-  std::size_t mostFrames = 24;                       // of the motion, evenly from its first to its last
-  std::size_t mostVertices = 5000;                   // of the skin, evenly in the file's order
+  std::size_t maxFrames = 24;                        // of the motion, evenly from its first to its last
+  std::size_t maxVertices = 5000;                    // of the skin, evenly in the file's order
   const Deformer* deformer = &kLinearBlendDeformer;  // by which the skin moves
 };
 

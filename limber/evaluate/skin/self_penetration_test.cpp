@@ -46,23 +46,23 @@ SkinnedModel twoBoxes() {
   return model;
 }
 
-Pose secondBoxAt(const SkinnedModel& model, const Vec3& place) {
+Pose secondBoxAt(const SkinnedModel& model, const Vec3& position) {
   Pose pose = restPose(model.skeleton);
-  pose.locals[1].translation = place;
+  pose.locals[1].translation = position;
   return pose;
 }
 
 // Pushed in by 2.4 cells, and half a cell to both sides: of each box the end's 8 x 8 places and two rings of 15 are
 // inside the other, of 386.
 const Vec3 kPushedIn(0.7, 0.0625, 0.0625);
-constexpr double kShare = (8 * 8 + 2 * 15) / 386.0;
+constexpr double kFraction = (8 * 8 + 2 * 15) / 386.0;
 
 TEST(SelfPenetration, CountsTheVerticesThatWentInside) {
   const SkinnedModel model = twoBoxes();
   const SelfPenetration result =
       measureSelfPenetration(model, {restPose(model.skeleton), secondBoxAt(model, kPushedIn)});
-  EXPECT_NEAR(result.worst, kShare, 1e-12);
-  EXPECT_NEAR(result.mean, kShare / 2, 1e-12);
+  EXPECT_NEAR(result.worst, kFraction, 1e-12);
+  EXPECT_NEAR(result.mean, kFraction / 2, 1e-12);
   EXPECT_EQ(result.worstFrame, 1u);
 }
 
@@ -85,12 +85,12 @@ TEST(SelfPenetration, FramesAndVerticesAreTakenEvenly) {
   std::vector<Pose> poses(101, restPose(model.skeleton));
   poses[50] = secondBoxAt(model, kPushedIn);
   SelfPenetrationOptions options;
-  options.mostFrames = 3;
+  options.maxFrames = 3;
   const SelfPenetration three = measureSelfPenetration(model, poses, options);
   EXPECT_EQ(three.worstFrame, 50u);
-  EXPECT_NEAR(three.mean, kShare / 3, 1e-12);
-  options.mostVertices = 200;
-  EXPECT_NEAR(measureSelfPenetration(model, poses, options).worst, kShare, 0.03);
+  EXPECT_NEAR(three.mean, kFraction / 3, 1e-12);
+  options.maxVertices = 200;
+  EXPECT_NEAR(measureSelfPenetration(model, poses, options).worst, kFraction, 0.03);
   EXPECT_THROW(measureSelfPenetration(model, {}), Error);
 }
 

@@ -19,11 +19,11 @@ double areaOf(const std::array<Vec3, 3>& corners) {
 }
 
 // The value that `share` of the weight lies at or below.
-double weightedQuantile(const std::vector<double>& values, const std::vector<double>& weights, double share) {
+double weightedQuantile(const std::vector<double>& values, const std::vector<double>& weights, double fraction) {
   std::vector<Index> order(values.size());
   std::iota(order.begin(), order.end(), Index{0});
   std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return values[a] < values[b]; });
-  const double sought = share * std::accumulate(weights.begin(), weights.end(), 0.0);
+  const double sought = fraction * std::accumulate(weights.begin(), weights.end(), 0.0);
   double sum = 0;
   for (const Index i : order) {
     sum += weights[i];
@@ -35,7 +35,7 @@ double weightedQuantile(const std::vector<double>& values, const std::vector<dou
 }  // namespace
 
 double TriangleStretch::distortion() const {
-  return std::min(kMostDistortion, std::max(most, least > 0 ? 1 / least : kMostDistortion));
+  return std::min(kMaxDistortion, std::max(most, least > 0 ? 1 / least : kMaxDistortion));
 }
 
 std::optional<TriangleStretch> triangleStretch(const std::array<Vec3, 3>& from, const std::array<Vec3, 3>& to) {

@@ -19,7 +19,7 @@ struct TriangleStretch {
   // `most` and 1 / `least`, at least 1. At most kMostDistortion, which a triangle squeezed flat has.
   double distortion() const;
 };
-inline constexpr double kMostDistortion = 10;
+inline constexpr double kMaxDistortion = 10;
 
 // Nothing where the first triangle has no area.
 std::optional<TriangleStretch> triangleStretch(const std::array<Vec3, 3>& from, const std::array<Vec3, 3>& to);

@@ -41,7 +41,7 @@ TEST(TriangleStretch, OfAScaledAndTurnedTriangleIsTheScale) {
     ASSERT_TRUE(stretch);
     EXPECT_NEAR(stretch->most, std::max(a, b), 1e-9);
     EXPECT_NEAR(stretch->least, std::min(a, b), 1e-9);
-    EXPECT_NEAR(stretch->distortion(), std::min(kMostDistortion, std::max(std::max(a, b), 1 / std::min(a, b))), 1e-6);
+    EXPECT_NEAR(stretch->distortion(), std::min(kMaxDistortion, std::max(std::max(a, b), 1 / std::min(a, b))), 1e-6);
   }
 }
 
@@ -61,11 +61,11 @@ TEST(TriangleStretch, SqueezedFlatIsTheMostDistortion) {
   const auto line = triangleStretch(corners, {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(2, 0, 0)});
   ASSERT_TRUE(line);
   EXPECT_EQ(line->least, 0);
-  EXPECT_EQ(line->distortion(), kMostDistortion);
+  EXPECT_EQ(line->distortion(), kMaxDistortion);
   const auto point = triangleStretch(corners, {Vec3(1, 1, 1), Vec3(1, 1, 1), Vec3(1, 1, 1)});
   ASSERT_TRUE(point);
   EXPECT_EQ(point->most, 0);
-  EXPECT_EQ(point->distortion(), kMostDistortion);
+  EXPECT_EQ(point->distortion(), kMaxDistortion);
   EXPECT_FALSE(triangleStretch({Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(2, 0, 0)}, corners));
   EXPECT_FALSE(triangleStretch({Vec3(1, 0, 0), Vec3(1, 0, 0), Vec3(2, 0, 0)}, corners));
 }

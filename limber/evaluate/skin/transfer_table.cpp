@@ -23,7 +23,7 @@ namespace {
 // Of the joints that count (countedJoints), how many have their name in the source, for both to be of a family.
 constexpr double kFamily = 0.8;
 // Bones of a person: hips, head, and two of each limb.
-constexpr std::size_t kLeastBones = 10;
+constexpr std::size_t kMinBones = 10;
 
 struct Person {
   std::filesystem::path path;
@@ -47,7 +47,7 @@ std::optional<Person> readPerson(const std::filesystem::path& path) {
   const Asset asset = readAsset(path);
   if (!hasRig(asset)) return std::nullopt;
   Person person{path, readSkinnedModel(asset), {}};
-  if (humanoidJoints(person.model.skeleton).size() < kLeastBones) return std::nullopt;
+  if (humanoidJoints(person.model.skeleton).size() < kMinBones) return std::nullopt;
   person.counted = countedJoints(person.model);
   return person;
 }
@@ -80,14 +80,14 @@ SkinnedModel byParts(const SkinnedModel& model) {
   const Anatomy anatomy = readAnatomy(model.skeleton);
   SkinnedModel result = model;
   std::map<std::string, Index> first;
-  std::vector<Index> standsFor;
+  std::vector<Index> humanoidJoint;
   for (Index j = 0; j < model.skeleton.jointCount(); ++j) {
     std::optional<BodyPart> part = bodyPartAt(anatomy, j);
     const std::optional<Index> parent = model.skeleton.joints[j].parent;
     if (!part || part->kind > PartKind::kArm) {  // fingers go along with hands, faces with heads
-      standsFor.push_back(parent ? standsFor[*parent] : j);
+      humanoidJoint.push_back(parent ? humanoidJoint[*parent] : j);
     } else {
-      standsFor.push_back(first.try_emplace(nameOf(*part), j).first->second);
+      humanoidJoint.push_back(first.try_emplace(nameOf(*part), j).first->second);
     }
     result.skeleton.joints[j].name = fmt::format("joint {}", j);
   }
@@ -97,7 +97,7 @@ SkinnedModel byParts(const SkinnedModel& model) {
     Index* joints = weights.joints.data() + std::size_t{v} * weights.slots;
     float* of = weights.weights.data() + std::size_t{v} * weights.slots;
     for (Index slot = 0; slot < weights.slots; ++slot) {
-      joints[slot] = standsFor[joints[slot]];
+      joints[slot] = humanoidJoint[joints[slot]];
       for (Index before = 0; before < slot; ++before) {
         if (joints[before] != joints[slot]) continue;
         of[before] += std::exchange(of[slot], 0.0f);
@@ -189,8 +189,8 @@ std::vector<TransferTrial> tryTransfers(const std::filesystem::path& folder, con
     for (std::size_t s = 0; s < people.size(); ++s) {
       if (s != t) (areFamily(people[s], people[t]) ? family : others).push_back(s);
     }
-    std::vector<std::size_t> sources = drawn(family, options.mostSources, random);
-    const std::vector<std::size_t> more = drawn(others, options.mostSources, random);
+    std::vector<std::size_t> sources = drawn(family, options.maxSources, random);
+    const std::vector<std::size_t> more = drawn(others, options.maxSources, random);
     sources.insert(sources.end(), more.begin(), more.end());
     for (std::size_t i = 0; i < sources.size(); ++i) {
       progress.update((static_cast<double>(t) + static_cast<double>(i) / static_cast<double>(sources.size())) /

@@ -30,7 +30,7 @@ struct TransferTrial {
 };
 
 struct TransferTrialOptions {
-  std::size_t mostSources = 2;  // for each target: of its family, and of others
+  std::size_t maxSources = 2;  // for each target: of its family, and of others
 };
 
 // Every model below the folder that has a rig, triangles and the skeleton of a person, as target of others there: of

@@ -20,7 +20,7 @@ constexpr Index kSlots = 4;
 constexpr float kInfluence = 1.0f / 256;
 constexpr int kPoses = 20;
 constexpr std::uint64_t kPoseSeed = 1;
-constexpr double kMostTurn = 30 * kDegree;
+constexpr double kMaxTurn = 30 * kDegree;
 
 float weightOf(const SkinWeights& weights, Index vertex, Index joint) {
   float sum = 0;
@@ -130,7 +130,7 @@ void measureDeformation(const PairedSkins& skins, const Skeleton& skeleton, Inde
   const double percent = box.diagonal() > 0 ? 100 / box.diagonal() : 0;
   SplitMix random(kPoseSeed);
   for (int pose = 0; pose < kPoses; ++pose) {
-    std::vector<Affine> transforms = skinTransforms(skeleton, randomPose(skeleton, kMostTurn, random));
+    std::vector<Affine> transforms = skinTransforms(skeleton, randomPose(skeleton, kMaxTurn, random));
     transforms.resize(transforms.size() + resultJoints, Affine::Identity());
     const std::vector<Vec3f> a = deformed(skins, skins.result, transforms);
     const std::vector<Vec3f> b = deformed(skins, skins.truth, transforms);

@@ -33,24 +33,24 @@ DisjointSets regionsOf(const SkinWeights& weights, const std::vector<VertexPair>
   return regions;
 }
 
-double islandShare(const SkinnedModel& model, const std::vector<VertexPair>& edges) {
+double islandFraction(const SkinnedModel& model, const std::vector<VertexPair>& edges) {
   const SkinWeights& weights = model.weights;
   DisjointSets regions = regionsOf(weights, edges);
   const std::vector<Index> pieces = vertexComponents(model.mesh);
   const std::vector<double> areas = vertexAreas(model.mesh);
-  std::vector<double> held(weights.weights.size(), 0);  // by a region, at the element that names it
+  std::vector<double> regionWeight(weights.weights.size(), 0);  // by a region, at the element that names it
   double all = 0;
-  for (Index i = 0; i < held.size(); ++i) {
+  for (Index i = 0; i < regionWeight.size(); ++i) {
     if (!(weights.weights[i] > kFollows)) continue;
     const double own = weights.weights[i] * areas[i / weights.slots];
-    held[regions.find(i)] += own;
+    regionWeight[regions.find(i)] += own;
     all += own;
   }
   std::map<std::pair<Index, Index>, double> largest;  // of a piece and a joint
-  for (Index i = 0; i < held.size(); ++i) {
-    if (!(held[i] > 0)) continue;
+  for (Index i = 0; i < regionWeight.size(); ++i) {
+    if (!(regionWeight[i] > 0)) continue;
     double& most = largest[{pieces[i / weights.slots], weights.joints[i]}];
-    most = std::max(most, held[i]);
+    most = std::max(most, regionWeight[i]);
   }
   double connected = 0;
   for (const auto& [where, most] : largest) connected += most;
@@ -62,7 +62,7 @@ double islandShare(const SkinnedModel& model, const std::vector<VertexPair>& edg
 WeightQuality measureWeights(const SkinnedModel& model) {
   const std::vector<VertexPair> edges = surfaceEdges(model.mesh).edges;
   WeightQuality result;
-  result.islands = islandShare(model, edges);
+  result.islands = islandFraction(model, edges);
   double followers = 0, influences = 0;
   for (Index v = 0; v < model.weights.vertexCount(); ++v) {
     const auto of = model.weights.weightsOf(v);

@@ -96,13 +96,13 @@ double islandsByWalking(const SkinnedModel& model, Index joints) {
     std::vector<bool> seen(own.size(), false);
     for (Index start = 0; start < own.size(); ++start) {
       if (seen[start] || own[start] == 0) continue;
-      double held = 0;
+      double fraction = 0;
       std::vector<Index> open = {start};
       seen[start] = true;
       while (!open.empty()) {
         const Index v = open.back();
         open.pop_back();
-        held += own[v] * areas[v];
+        fraction += own[v] * areas[v];
         for (const Index n : next[v]) {
           if (!seen[n] && own[n] > 0) {
             seen[n] = true;
@@ -110,10 +110,10 @@ double islandsByWalking(const SkinnedModel& model, Index joints) {
           }
         }
       }
-      all += held;
-      largest[pieces[start]] = std::max(largest[pieces[start]], held);
+      all += fraction;
+      largest[pieces[start]] = std::max(largest[pieces[start]], fraction);
     }
-    for (const auto& [piece, held] : largest) most += held;
+    for (const auto& [piece, fraction] : largest) most += fraction;
   }
   return all > 0 ? 1 - most / all : 0;
 }

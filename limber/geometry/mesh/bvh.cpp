@@ -20,7 +20,7 @@ constexpr Index kParallelAbove = 4096;  // triangles; smaller subtrees are built
 // Pending children of a traversal. No child holds more than (15/16)^3 of its node's triangles (see BvhBuilder), so 2^32
 // triangles make at most 115 levels, each of which leaves up to three children waiting.
 constexpr int kStackSize = 512;
-constexpr Index kMostUneven = 16;
+constexpr Index kMaxUnevenness = 16;
 
 using Lanes = Float4;  // a number for each child of a node
 
@@ -167,7 +167,7 @@ class BvhBuilder {
     return range.begin + left;
   }
 
-  static bool tooUneven(Index left, Index size) { return std::min(left, size - left) < size / kMostUneven; }
+  static bool tooUneven(Index left, Index size) { return std::min(left, size - left) < size / kMaxUnevenness; }
 
   Index medianSplit(Range range, int axis) {
     const Index middle = range.begin + range.size() / 2;

@@ -16,10 +16,10 @@ TriMesh thinTube() {
   return testing::moved(testing::tube(12, 40, true), Vec3f(4, 0.4f, 0.4f), Vec3f(1, 2, 3));
 }
 
-void reverseShare(TriMesh& mesh, double share, std::uint64_t seed = 1) {
+void reverseFraction(TriMesh& mesh, double fraction, std::uint64_t seed = 1) {
   Random random(seed);
   for (Triangle& t : mesh.triangles) {
-    if (random.uniform(0, 1) < share) std::swap(t[0], t[2]);
+    if (random.uniform(0, 1) < fraction) std::swap(t[0], t[2]);
   }
 }
 
@@ -32,16 +32,16 @@ double volumeOf(const TriMesh& mesh) {
 
 TEST(MendFaces, AnyShareOfReversedFacesIsMended) {
   const TriMesh clean = thinTube();
-  for (const double share : {0.1, 0.3, 0.5, 0.7, 0.9}) {
+  for (const double fraction : {0.1, 0.3, 0.5, 0.7, 0.9}) {
     TriMesh mesh = clean;
-    reverseShare(mesh, share);
+    reverseFraction(mesh, fraction);
     TriMesh beside = mesh;  // a bit far away, as broken vertices make
     const auto first = beside.vertexCount();
     for (const Vec3f& p : {Vec3f(4e5f, 0, 0), Vec3f(4e5f, 0.1f, 0), Vec3f(4e5f, 0, 0.1f)})
       beside.positions.push_back(p);
     beside.triangles.push_back({first, first + 1, first + 2});
     mendFaces(mesh);
-    EXPECT_NEAR(volumeOf(mesh), volumeOf(clean), 1e-6) << share;
+    EXPECT_NEAR(volumeOf(mesh), volumeOf(clean), 1e-6) << fraction;
     mendFaces(beside);
     beside.triangles.pop_back();
     EXPECT_EQ(beside.triangles, mesh.triangles);
@@ -62,11 +62,11 @@ TEST(MendFaces, HalfOfABodyIsMended) {
 
 TEST(MendFaces, RaysTellTheOutsideOfOpenPatches) {
   TriMesh clean = testing::moved(testing::tube(12, 40, false), Vec3f(4, 0.4f, 0.4f), Vec3f(1, 2, 3));
-  for (const double share : {0.3, 0.8}) {
+  for (const double fraction : {0.3, 0.8}) {
     TriMesh mesh = clean;
-    reverseShare(mesh, share);
+    reverseFraction(mesh, fraction);
     mendFaces(mesh);
-    EXPECT_NEAR(volumeOf(mesh), volumeOf(clean), 1e-6) << share;
+    EXPECT_NEAR(volumeOf(mesh), volumeOf(clean), 1e-6) << fraction;
   }
 }
 
@@ -92,7 +92,7 @@ TEST(MendFaces, PartlyDoubledAndReversedFacesAreMended) {
     std::swap(twin[0], twin[1]);
     mesh.triangles.push_back(twin);
   }
-  reverseShare(mesh, 0.6);
+  reverseFraction(mesh, 0.6);
   mendFaces(mesh);
   EXPECT_EQ(mesh.triangleCount(), clean.triangleCount());
   EXPECT_NEAR(volumeOf(mesh), volumeOf(clean), 1e-6);
@@ -114,7 +114,7 @@ INSTANTIATE_TEST_SUITE_P(, MendFacesCatalogue, ::testing::ValuesIn(testing::cata
 TEST(MendFaces, AgreeingMeshesKeepTheirBytes) {
   for (const bool insideOut : {false, true}) {
     TriMesh mesh = testing::join(testing::icosphere(1), testing::flatGrid(3, 3));
-    if (insideOut) reverseShare(mesh, 1);
+    if (insideOut) reverseFraction(mesh, 1);
     const std::vector<Triangle> before = mesh.triangles;
     const MendedFaces mended = mendFaces(mesh);
     EXPECT_EQ(mended.repeated + mended.reversed, 0u);

@@ -11,7 +11,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kMost = 0.98;  // of the area: what counts for the size wherever it lies
+constexpr double kMax = 0.98;  // of the area: what counts for the size wherever it lies
 
 struct SurfacePiece {
   Box box;
@@ -83,11 +83,11 @@ Box modelBox(const TriMesh& mesh) {
     return (a.center - middle).squaredNorm() < (b.center - middle).squaredNorm();
   });
   Box most;
-  double areaOfMost = 0;
+  double maxArea = 0;
   for (const SurfacePiece& piece : pieces) {
     addBox(most, piece.box);
-    areaOfMost += piece.area;
-    if (areaOfMost >= kMost * area) break;
+    maxArea += piece.area;
+    if (maxArea >= kMax * area) break;
   }
   const Vec3 reach = Vec3::Constant(kFarAway * most.longestSide());
   const Vec3 low = most.min - reach, high = most.max + reach;

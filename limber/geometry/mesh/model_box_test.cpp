@@ -6,10 +6,10 @@ namespace limber {
 namespace {
 
 // Its corners at place + 0, side * x and side * y.
-void addTriangle(TriMesh& mesh, const Vec3f& place, float side = 1) {
+void addTriangle(TriMesh& mesh, const Vec3f& position, float side = 1) {
   const Index first = mesh.vertexCount();
   for (const Vec3f& corner : {Vec3f(0, 0, 0), Vec3f(side, 0, 0), Vec3f(0, side, 0)}) {
-    mesh.positions.push_back(place + corner);
+    mesh.positions.push_back(position + corner);
   }
   mesh.triangles.push_back({first, first + 1, first + 2});
 }

@@ -40,7 +40,7 @@ class SignedDistance {
   // at() of N places in one go, x, y and z apart, in single precision: several times as fast as one by one. Beyond the
   // grid the value at its border.
   template <std::size_t N>
-  std::array<float, N> atEach(const std::array<std::array<float, N>, 3>& places) const;
+  std::array<float, N> atEach(const std::array<std::array<float, N>, 3>& positions) const;
   // Of at(), by central differences of one spacing.
   Vec3 gradientAt(const Vec3& point) const;
 
@@ -50,14 +50,14 @@ class SignedDistance {
   void settle(Index step, std::vector<char>& known, std::vector<std::size_t>& wanted);
 
   // At a place in spacings from the first node, not beyond the grid.
-  double between(const Vec3& place) const {
+  double between(const Vec3& spot) const {
     Index low[3];
     double part[3];
     for (int axis = 0; axis < 3; ++axis) {
-      low[axis] = std::min(static_cast<Index>(place[axis]), size_[axis] - 2);
-      part[axis] = place[axis] - low[axis];
+      low[axis] = std::min(static_cast<Index>(spot[axis]), size_[axis] - 2);
+      part[axis] = spot[axis] - low[axis];
     }
-    const auto mix = [](double a, double b, double share) { return a + share * (b - a); };
+    const auto mix = [](double a, double b, double fraction) { return a + fraction * (b - a); };
     const auto level = [&](const float* at) {
       const float* next = at + size_[0];
       return mix(mix(at[0], at[1], part[0]), mix(next[0], next[1], part[0]), part[1]);
@@ -75,7 +75,7 @@ class SignedDistance {
 
 // Loops of one kind of work each, which compilers turn into vector instructions; those give the same on every machine.
 template <std::size_t N>
-std::array<float, N> SignedDistance::atEach(const std::array<std::array<float, N>, 3>& places) const {
+std::array<float, N> SignedDistance::atEach(const std::array<std::array<float, N>, 3>& positions) const {
   std::array<std::array<std::int32_t, N>, 3> low;
   std::array<std::array<float, N>, 3> part;
   for (int axis = 0; axis < 3; ++axis) {
@@ -83,7 +83,7 @@ std::array<float, N> SignedDistance::atEach(const std::array<std::array<float, N
     // Just before the last node: cells do not hold their far ones.
     const float last = static_cast<float>(last_[axis] * (1 - 1e-6));
     for (std::size_t i = 0; i < N; ++i) {
-      float scaled = (places[axis][i] - origin) * per;
+      float scaled = (positions[axis][i] - origin) * per;
       scaled = scaled > 0 ? scaled : 0;
       scaled = scaled < last ? scaled : last;
       low[axis][i] = static_cast<std::int32_t>(scaled);
@@ -105,7 +105,7 @@ std::array<float, N> SignedDistance::atEach(const std::array<std::array<float, N
   }
   std::array<float, N> distances;
   for (std::size_t i = 0; i < N; ++i) {
-    const auto mix = [](float a, float b, float share) { return a + share * (b - a); };
+    const auto mix = [](float a, float b, float fraction) { return a + fraction * (b - a); };
     const float x = part[0][i], y = part[1][i];
     const float near = mix(mix(corner[0][i], corner[1][i], x), mix(corner[2][i], corner[3][i], x), y);
     const float far = mix(mix(corner[4][i], corner[5][i], x), mix(corner[6][i], corner[7][i], x), y);

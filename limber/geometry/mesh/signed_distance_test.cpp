@@ -60,16 +60,16 @@ TEST(SignedDistance, OfManyPlacesIsThatOfEach) {
   const TriMesh mesh = testing::icosphere(3);
   const SignedDistance distance = distancesOf(mesh, 24);
   Random random;
-  constexpr std::size_t kPlaces = 200;
-  std::array<std::array<float, kPlaces>, 3> places;
-  for (std::size_t i = 0; i < kPlaces; ++i) {
-    for (int axis = 0; axis < 3; ++axis) places[axis][i] = static_cast<float>(random.uniform(-1, 1));
+  constexpr std::size_t kSampleCount = 200;
+  std::array<std::array<float, kSampleCount>, 3> positions;
+  for (std::size_t i = 0; i < kSampleCount; ++i) {
+    for (int axis = 0; axis < 3; ++axis) positions[axis][i] = static_cast<float>(random.uniform(-1, 1));
   }
   const Vec3 first = distance.position(0), last = distance.position(distance.nodeCount() - 1);
-  const std::array<float, kPlaces> many = distance.atEach(places);
-  for (std::size_t i = 0; i < kPlaces; ++i) {
-    const Vec3 place(places[0][i], places[1][i], places[2][i]);
-    EXPECT_NEAR(many[i], distance.at(place.cwiseMax(first).cwiseMin(last)), 1e-5);
+  const std::array<float, kSampleCount> many = distance.atEach(positions);
+  for (std::size_t i = 0; i < kSampleCount; ++i) {
+    const Vec3 position(positions[0][i], positions[1][i], positions[2][i]);
+    EXPECT_NEAR(many[i], distance.at(position.cwiseMax(first).cwiseMin(last)), 1e-5);
   }
 }
 

@@ -14,9 +14,9 @@ namespace {
 
 std::vector<Vec3> pointsAround(int count) {
   std::mt19937 random(1);
-  std::uniform_real_distribution<double> place(-1.5, 1.5);
+  std::uniform_real_distribution<double> coordinate(-1.5, 1.5);
   std::vector<Vec3> points;
-  for (int i = 0; i < count; ++i) points.emplace_back(place(random), place(random), place(random));
+  for (int i = 0; i < count; ++i) points.emplace_back(coordinate(random), coordinate(random), coordinate(random));
   return points;
 }
 

@@ -12,7 +12,7 @@ namespace limber {
 namespace {
 
 constexpr double kSmoothing = 4.0 / 3.0;  // Vanek and others 1996, section 3.2
-constexpr double kLeastShrinking = 0.8;   // a coarser level that keeps more unknowns than this share gains nothing
+constexpr double kMinShrinking = 0.8;     // a coarser level that keeps more unknowns than this share gains nothing
 constexpr std::size_t kRowRange = 4096;   // rows of one parallel piece of work
 
 // Rows computed side by side and put together in their order. `fill(row, columns, values)` appends one row.
@@ -308,7 +308,7 @@ std::optional<CoarserMatrix> coarserMatrix(const SparseRows& matrix, double stro
     const Links links = linksOf(matrix, strongLinks);
     std::vector<Index> aggregateOf;
     const Index aggregates = aggregate(links.strong, aggregateOf);
-    if (aggregates > kLeastShrinking * matrix.rowCount()) return std::nullopt;
+    if (aggregates > kMinShrinking * matrix.rowCount()) return std::nullopt;
     coarser.prolong = prolongation(links, aggregateOf, aggregates);
   }
   coarser.matrix = product(transposed(coarser.prolong), product(matrix, coarser.prolong));

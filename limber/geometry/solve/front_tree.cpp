@@ -14,25 +14,25 @@ namespace {
 constexpr Index kWholeSubtree = 8;      // unknowns; a subtree of at most so many is one front
 constexpr double kZerosAllowed = 0.25;  // part of a front's entries that may be zeros added by gathering columns
 
-std::vector<Index> minimumDegreePlaces(const Eigen::SparseMatrix<double>& lower) {
+std::vector<Index> minimumDegreeOrder(const Eigen::SparseMatrix<double>& lower) {
   Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
   Eigen::AMDOrdering<int>()(lower.selfadjointView<Eigen::Lower>(), order);
-  std::vector<Index> placeOf(lower.cols());
-  for (Eigen::Index place = 0; place < lower.cols(); ++place) {
-    placeOf[order.indices()[place]] = static_cast<Index>(place);
+  std::vector<Index> positionOf(lower.cols());
+  for (Eigen::Index index = 0; index < lower.cols(); ++index) {
+    positionOf[order.indices()[index]] = static_cast<Index>(index);
   }
-  return placeOf;
+  return positionOf;
 }
 
 // Entries by the earlier (`byLater` false) or the later of their two places.
-PermutedEntries permuteEntries(const Eigen::SparseMatrix<double>& lower, const std::vector<Index>& placeOf,
+PermutedEntries permuteEntries(const Eigen::SparseMatrix<double>& lower, const std::vector<Index>& positionOf,
                                bool byLater) {
   PermutedEntries result;
-  const std::size_t count = placeOf.size();
+  const std::size_t count = positionOf.size();
   const auto forEachEntry = [&](const auto& visit) {
     for (std::size_t column = 0; column < count; ++column) {
       for (int p = lower.outerIndexPtr()[column]; p < lower.outerIndexPtr()[column + 1]; ++p) {
-        const auto [early, late] = std::minmax(placeOf[column], placeOf[lower.innerIndexPtr()[p]]);
+        const auto [early, late] = std::minmax(positionOf[column], positionOf[lower.innerIndexPtr()[p]]);
         visit(byLater ? late : early, byLater ? early : late, p);
       }
     }
@@ -40,11 +40,11 @@ PermutedEntries permuteEntries(const Eigen::SparseMatrix<double>& lower, const s
   result.first.assign(count + 1, 0);
   forEachEntry([&](Index column, Index, int) { ++result.first[column + 1]; });
   std::partial_sum(result.first.begin(), result.first.end(), result.first.begin());
-  result.place.resize(static_cast<std::size_t>(result.first.back()));
-  result.position.resize(result.place.size());
+  result.row.resize(static_cast<std::size_t>(result.first.back()));
+  result.position.resize(result.row.size());
   std::vector<int> end(result.first.begin(), result.first.end() - 1);
   forEachEntry([&](Index column, Index row, int p) {
-    result.place[end[column]] = row;
+    result.row[end[column]] = row;
     result.position[end[column]++] = p;
   });
   return result;
@@ -57,7 +57,7 @@ std::vector<Index> eliminationTree(const PermutedEntries& byLater) {
   for (Index i = 0; i < count; ++i) {
     parent[i] = ancestor[i] = i;
     for (int p = byLater.first[i]; p < byLater.first[i + 1]; ++p) {
-      for (Index k = byLater.place[p]; k != i;) {
+      for (Index k = byLater.row[p]; k != i;) {
         const Index next = ancestor[k];
         ancestor[k] = i;
         if (next == k) {
@@ -73,9 +73,9 @@ std::vector<Index> eliminationTree(const PermutedEntries& byLater) {
 
 // New places so that each subtree's are contiguous and a parent comes right after its largest child's subtree.
 struct Postorder {
-  std::vector<Index> placeOf;   // by old place
-  std::vector<Index> parent;    // by new place, itself for a root
-  std::vector<Index> treeSize;  // by new place: how many places the subtree under it has
+  std::vector<Index> positionOf;  // by old place
+  std::vector<Index> parent;      // by new place, itself for a root
+  std::vector<Index> treeSize;    // by new place: how many places the subtree under it has
 };
 
 Postorder postorder(const std::vector<Index>& parent) {
@@ -99,16 +99,16 @@ Postorder postorder(const std::vector<Index>& parent) {
       end = rootsEnd;
       rootsEnd -= size[i];
     } else if (largest[parent[i]] == i) {
-      end = result.placeOf[parent[i]];
+      end = result.positionOf[parent[i]];
     } else {
       end = freeEnd[parent[i]];
       freeEnd[parent[i]] -= size[i];
     }
-    const Index place = end - 1;
-    result.placeOf[i] = place;
-    freeEnd[i] = place - (largest[i] == kNoIndex ? 0 : size[largest[i]]);
-    result.parent[place] = root ? place : result.placeOf[parent[i]];
-    result.treeSize[place] = size[i];
+    const Index index = end - 1;
+    result.positionOf[i] = index;
+    freeEnd[i] = index - (largest[i] == kNoIndex ? 0 : size[largest[i]]);
+    result.parent[index] = root ? index : result.positionOf[parent[i]];
+    result.treeSize[index] = size[i];
   }
   return result;
 }
@@ -120,17 +120,17 @@ class FrontGatherer {
   std::vector<FrontPlan> run() {
     const Index count = static_cast<Index>(tree_.parent.size());
     roots_.resize(count);
-    for (Index place = 0; place < count; ++place) {
-      const bool rootOfAll = tree_.parent[place] == place;
-      const bool small = tree_.treeSize[place] <= kWholeSubtree;
-      if (small && !rootOfAll && tree_.treeSize[tree_.parent[place]] <= kWholeSubtree) continue;
+    for (Index index = 0; index < count; ++index) {
+      const bool rootOfAll = tree_.parent[index] == index;
+      const bool small = tree_.treeSize[index] <= kWholeSubtree;
+      if (small && !rootOfAll && tree_.treeSize[tree_.parent[index]] <= kWholeSubtree) continue;
       if (small) {
-        addFront(place + 1 - tree_.treeSize[place], place + 1);
+        addFront(index + 1 - tree_.treeSize[index], index + 1);
       } else {
-        addColumn(place);
+        addColumn(index);
       }
       const Index front = static_cast<Index>(fronts_.size() - 1);
-      if (!rootOfAll) roots_[tree_.parent[place]].push_back(front);
+      if (!rootOfAll) roots_[tree_.parent[index]].push_back(front);
     }
     return std::move(fronts_);
   }
@@ -142,7 +142,7 @@ class FrontGatherer {
     front.begin = begin;
     front.end = end;
     for (int p = entries_.first[begin]; p < entries_.first[end]; ++p) {
-      if (entries_.place[p] >= end) front.rows.push_back(entries_.place[p]);
+      if (entries_.row[p] >= end) front.rows.push_back(entries_.row[p]);
     }
     std::sort(front.rows.begin(), front.rows.end());
     front.rows.erase(std::unique(front.rows.begin(), front.rows.end()), front.rows.end());
@@ -150,12 +150,12 @@ class FrontGatherer {
     zeros_.push_back(0);
   }
 
-  void addColumn(Index place) {
-    addFront(place, place + 1);
+  void addColumn(Index index) {
+    addFront(index, index + 1);
     FrontPlan column = std::move(fronts_.back());
     fronts_.pop_back();
     zeros_.pop_back();
-    column.children = std::move(roots_[place]);
+    column.children = std::move(roots_[index]);
     std::vector<Index> merged;
     for (const Index child : column.children) {
       const std::vector<Index>& below = fronts_[child].rows;  // its first row is this place
@@ -171,7 +171,7 @@ class FrontGatherer {
     const double own = fronts_[last].ownCount() + 1;
     if (zeros <= kZerosAllowed * own * (0.5 * own + static_cast<double>(column.rows.size()))) {
       FrontPlan& front = fronts_[last];
-      front.end = place + 1;
+      front.end = index + 1;
       front.rows = std::move(column.rows);
       column.children.pop_back();
       front.children.insert(front.children.end(), column.children.begin(), column.children.end());
@@ -194,10 +194,10 @@ class FrontGatherer {
 
 FrontTree planFronts(const Eigen::SparseMatrix<double>& lower) {
   FrontTree result;
-  result.placeOf = minimumDegreePlaces(lower);
-  const Postorder tree = postorder(eliminationTree(permuteEntries(lower, result.placeOf, true)));
-  for (Index& place : result.placeOf) place = tree.placeOf[place];
-  result.entries = permuteEntries(lower, result.placeOf, false);
+  result.positionOf = minimumDegreeOrder(lower);
+  const Postorder tree = postorder(eliminationTree(permuteEntries(lower, result.positionOf, true)));
+  for (Index& index : result.positionOf) index = tree.positionOf[index];
+  result.entries = permuteEntries(lower, result.positionOf, false);
   result.fronts = FrontGatherer(tree, result.entries).run();
   return result;
 }

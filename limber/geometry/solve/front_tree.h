@@ -23,12 +23,12 @@ struct FrontPlan {
 // The entries of a permuted symmetric matrix, each in the column of the place that comes first.
 struct PermutedEntries {
   std::vector<int> first;     // #V + 1
-  std::vector<Index> place;   // of each entry's row, never before the column's
+  std::vector<Index> row;     // of each entry's row, never before the column's
   std::vector<int> position;  // of its value in the matrix given
 };
 
 struct FrontTree {
-  std::vector<Index> placeOf;     // #V: where in the order each unknown comes
+  std::vector<Index> positionOf;  // #V: where in the order each unknown comes
   std::vector<FrontPlan> fronts;  // children before parents
   PermutedEntries entries;
 };

@@ -21,17 +21,17 @@ class FrontTreeCatalogue : public ::testing::TestWithParam<testing::NamedMesh> {
 
   // By place: the later places that elimination in this order fills.
   std::vector<std::set<Index>> fill() const {
-    std::vector<std::set<Index>> rows(tree_.placeOf.size());
+    std::vector<std::set<Index>> rows(tree_.positionOf.size());
     for (int column = 0; column < matrix_.cols(); ++column) {
       for (Eigen::SparseMatrix<double>::InnerIterator it(matrix_, column); it; ++it) {
-        const auto [early, late] = std::minmax(tree_.placeOf[column], tree_.placeOf[it.row()]);
+        const auto [early, late] = std::minmax(tree_.positionOf[column], tree_.positionOf[it.row()]);
         if (early != late) rows[early].insert(late);
       }
     }
-    for (Index place = 0; place < rows.size(); ++place) {
-      if (rows[place].empty()) continue;
-      const Index parent = *rows[place].begin();
-      rows[parent].insert(std::next(rows[place].begin()), rows[place].end());
+    for (Index index = 0; index < rows.size(); ++index) {
+      if (rows[index].empty()) continue;
+      const Index parent = *rows[index].begin();
+      rows[parent].insert(std::next(rows[index].begin()), rows[index].end());
     }
     return rows;
   }
@@ -41,24 +41,24 @@ class FrontTreeCatalogue : public ::testing::TestWithParam<testing::NamedMesh> {
 };
 
 TEST_P(FrontTreeCatalogue, EveryUnknownHasAPlaceInOneFront) {
-  std::vector<Index> places = tree_.placeOf;
-  std::sort(places.begin(), places.end());
-  for (Index i = 0; i < places.size(); ++i) EXPECT_EQ(places[i], i);
+  std::vector<Index> indices = tree_.positionOf;
+  std::sort(indices.begin(), indices.end());
+  for (Index i = 0; i < indices.size(); ++i) EXPECT_EQ(indices[i], i);
   Index next = 0;
   for (const FrontPlan& front : tree_.fronts) {
     EXPECT_EQ(front.begin, next);
     EXPECT_GT(front.end, front.begin);
     next = front.end;
   }
-  EXPECT_EQ(next, places.size());
+  EXPECT_EQ(next, indices.size());
 }
 
 TEST_P(FrontTreeCatalogue, RowsHoldAllFill) {
   const std::vector<std::set<Index>> filled = fill();
   for (const FrontPlan& front : tree_.fronts) {
     EXPECT_TRUE(std::is_sorted(front.rows.begin(), front.rows.end()));
-    for (Index place = front.begin; place < front.end; ++place) {
-      for (const Index row : filled[place]) {
+    for (Index index = front.begin; index < front.end; ++index) {
+      for (const Index row : filled[index]) {
         EXPECT_TRUE(row < front.end || std::binary_search(front.rows.begin(), front.rows.end(), row));
       }
     }

@@ -32,9 +32,9 @@ class DelaunayFlipper {
       if (h < t_.twin[h] && !isDelaunay(h)) push(h);
     }
     // Flipping ends by itself (Bobenko, Springborn 2007); the bound is there for rounding alone.
-    const std::size_t mostFlips = 100 * std::size_t{sideCount} + 1000;
+    const std::size_t maxFlips = 100 * std::size_t{sideCount} + 1000;
     std::size_t flips = 0;
-    while (!stack_.empty() && flips < mostFlips) {
+    while (!stack_.empty() && flips < maxFlips) {
       const Index h = stack_.back();
       stack_.pop_back();
       waiting_[h] = 0;
@@ -82,7 +82,7 @@ class DelaunayFlipper {
     const double diagonal = otherDiagonal(t_.length[h], t_.length[h2], t_.length[h1], t_.length[t1], t_.length[t2]);
 
     const Index outer[4] = {h2, t1, t2, h1};  // where the sides are
-    const Index place[4] = {h1, h2, t1, t2};  // where they go
+    const Index index[4] = {h1, h2, t1, t2};  // where they go
     Index from[4], twin[4];
     double length[4];
     for (int i = 0; i < 4; ++i) {
@@ -90,21 +90,21 @@ class DelaunayFlipper {
       twin[i] = t_.twin[outer[i]];
       length[i] = t_.length[outer[i]];
       for (int k = 0; k < 4; ++k) {
-        if (t_.twin[outer[i]] == outer[k]) twin[i] = place[k];
+        if (t_.twin[outer[i]] == outer[k]) twin[i] = index[k];
       }
     }
     for (int i = 0; i < 4; ++i) {
-      t_.from[place[i]] = from[i];
-      t_.length[place[i]] = length[i];
-      t_.twin[place[i]] = twin[i];
-      t_.twin[twin[i]] = place[i];
+      t_.from[index[i]] = from[i];
+      t_.length[index[i]] = length[i];
+      t_.twin[index[i]] = twin[i];
+      t_.twin[twin[i]] = index[i];
     }
     t_.from[h] = d;
     t_.from[t] = c;
     t_.length[h] = t_.length[t] = diagonal;
     updateCotangents(h - h % 3);
     updateCotangents(t - t % 3);
-    for (const Index side : place) {
+    for (const Index side : index) {
       if (!isDelaunay(side)) push(side);
     }
   }

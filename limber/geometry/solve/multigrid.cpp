@@ -263,7 +263,7 @@ class Multigrid::Solve {
 
   bool run(std::span<const std::span<const Entry>> right) {
     clear();
-    place(right);
+    scatter(right);
     Scratch::Level& coarsest = scratch_.levels_.back();
     for (Index v = 0; v < multigrid_.coarsestCount_; ++v) {
       coarsest.active.push_back(v);
@@ -292,7 +292,7 @@ class Multigrid::Solve {
   }
 
   // The right-hand sides on every level; sources are active.
-  void place(std::span<const std::span<const Entry>> right) {
+  void scatter(std::span<const std::span<const Entry>> right) {
     for (std::size_t k = 0; k < right.size(); ++k) {
       for (const Entry& entry : right[k]) {
         source(scratch_.levels_[0], multigrid_.rowOf_[entry.unknown])
@@ -321,7 +321,7 @@ class Multigrid::Solve {
   void solveCoarsest() {
     Scratch::Level& level = scratch_.levels_.back();
     const SparseCholesky& cholesky = *multigrid_.coarsest_;
-    const auto rowOf = [&](Index v) { return scratch_.coarsest_.data() + cholesky.place(v) * std::size_t{kColumns}; };
+    const auto rowOf = [&](Index v) { return scratch_.coarsest_.data() + cholesky.rowOf(v) * std::size_t{kColumns}; };
     for (Index v = 0; v < multigrid_.coarsestCount_; ++v) {
       for (int k = 0; k < kColumns; ++k) rowOf(v)[k] = level.right[v][k];
     }
@@ -386,7 +386,7 @@ class Multigrid::Solve {
     bool settled = false;
     ColumnSums before = {};
     smoothDown(l, [](Index) {});
-    for (int cycles = 0; cycles < kMostCycles && !settled; ++cycles) {
+    for (int cycles = 0; cycles < kMaxCycles && !settled; ++cycles) {
       cycle(l + 1);
       const ColumnSums now = smoothUp(l);
       const Columns step = quotients(now, redirect(l, quotients(now, before)));

@@ -17,14 +17,14 @@ using Sparse = Eigen::SparseMatrix<double>;
 constexpr float kTolerance = 1e-5f;
 
 // Heat that leaves each vertex, some faster; what held it at 1 would be the right-hand side `leaving`.
-struct HeldSurface {
+struct PinnedSurface {
   Sparse lower;
   Eigen::VectorXd leaving;
 };
 
-HeldSurface heldSurface(const TriMesh& mesh) {
+PinnedSurface pinnedSurface(const TriMesh& mesh) {
   Laplacian laplacian = robustLaplacian(mesh, vertexComponents(mesh));
-  HeldSurface result{laplacian.stiffness, Eigen::VectorXd(laplacian.mass.size())};
+  PinnedSurface result{laplacian.stiffness, Eigen::VectorXd(laplacian.mass.size())};
   for (int v = 0; v < result.leaving.size(); ++v) {
     result.leaving[v] = (laplacian.mass[v] > 0 ? laplacian.mass[v] : 1) * (1 + 40 * (v % 7));
     result.lower.coeffRef(v, v) += result.leaving[v];
@@ -33,7 +33,7 @@ HeldSurface heldSurface(const TriMesh& mesh) {
 }
 
 // Every k-th unknown is held at 1 in the k-th of so many right-hand sides, at 0 in the others: solutions sum to 1.
-std::vector<std::vector<Multigrid::Entry>> sharedSources(const HeldSurface& surface, int count) {
+std::vector<std::vector<Multigrid::Entry>> sharedSources(const PinnedSurface& surface, int count) {
   std::vector<std::vector<Multigrid::Entry>> result(count);
   for (int v = 0; v < surface.leaving.size(); ++v) {
     result[v % count].push_back({static_cast<Index>(v), surface.leaving[v]});
@@ -60,7 +60,7 @@ Eigen::MatrixXd solved(const Multigrid& multigrid, const std::vector<std::vector
 
 // Five right-hand sides whose solutions sum to 1.
 void expectAsFactored(const TriMesh& mesh, Index directBelow) {
-  const HeldSurface surface = heldSurface(mesh);
+  const PinnedSurface surface = pinnedSurface(mesh);
   const Index rows = mesh.vertexCount();
   const Multigrid multigrid(surface.lower, directBelow);
   const auto right = sharedSources(surface, 5);
@@ -70,13 +70,13 @@ void expectAsFactored(const TriMesh& mesh, Index directBelow) {
   cholesky.factorize(surface.lower);
   std::vector<double> x(rows * std::size_t{SparseCholesky::kColumns}, 0);
   for (std::size_t k = 0; k < right.size(); ++k) {
-    for (const auto& [v, value] : right[k]) x[cholesky.place(v) * std::size_t{SparseCholesky::kColumns} + k] = value;
+    for (const auto& [v, value] : right[k]) x[cholesky.rowOf(v) * std::size_t{SparseCholesky::kColumns} + k] = value;
   }
   cholesky.solve(x.data());
   for (Index v = 0; v < rows; ++v) {
     for (int k = 0; k < found.cols(); ++k) {
       ASSERT_NEAR(found(v, k),
-                  x[cholesky.place(v) * std::size_t{SparseCholesky::kColumns} + static_cast<std::size_t>(k)], 1e-4)
+                  x[cholesky.rowOf(v) * std::size_t{SparseCholesky::kColumns} + static_cast<std::size_t>(k)], 1e-4)
           << v << ' ' << k;
     }
     ASSERT_NEAR(found.row(v).sum(), 1, 5e-4) << v;

@@ -17,7 +17,7 @@ namespace limber {
 namespace {
 
 constexpr int kStrip = 4;
-constexpr double kSubtreeShare = 1.0 / 24;      // of all the work, at most, in one subtree that stays on one thread
+constexpr double kSubtreeFraction = 1.0 / 24;   // of all the work, at most, in one subtree that stays on one thread
 constexpr std::size_t kParallelWork = 1 << 20;  // multiplications worth spreading over threads
 constexpr Index kTile = 8;                      // strips that stay in cache together
 
@@ -183,7 +183,7 @@ void SparseCholesky::divideWork() {
   }
   for (std::size_t i = count; i > 0;) {
     --i;
-    if (work[i] > kSubtreeShare * total) {
+    if (work[i] > kSubtreeFraction * total) {
       top_.push_back(static_cast<Index>(i));
     } else {
       subtrees_.push_back({begin[i], static_cast<Index>(i + 1)});
@@ -226,7 +226,7 @@ void SparseCholesky::factorizeFront(Index index, const double* values) {
 
 // The matrix's own entries in the front's columns, and 1 on the diagonal of the padding.
 void SparseCholesky::assemble(const FrontPlan& plan, const Front& front, const double* values, double* least) const {
-  constexpr double kLeastPivot = 1e-14;  // of the diagonal entry
+  constexpr double kMinPivot = 1e-14;  // of the diagonal entry
   const PermutedEntries& entries = tree_.entries;
   const Index own = plan.ownCount(), stride = front.ownPadded;
   double* panel = factor_.get() + front.offset;
@@ -235,16 +235,16 @@ void SparseCholesky::assemble(const FrontPlan& plan, const Front& front, const d
   };
   for (Index column = 0; column < own; ++column) {
     for (int p = entries.first[plan.begin + column]; p < entries.first[plan.begin + column + 1]; ++p) {
-      const Index place = entries.place[p];
+      const Index index = entries.row[p];
       const double value = values[entries.position[p]];
-      if (place < plan.end) {
-        at(place - plan.begin, column) = value;
+      if (index < plan.end) {
+        at(index - plan.begin, column) = value;
       } else {
-        const auto row = std::lower_bound(plan.rows.begin(), plan.rows.end(), place);
+        const auto row = std::lower_bound(plan.rows.begin(), plan.rows.end(), index);
         at(stride + static_cast<Index>(row - plan.rows.begin()), column) = value;
       }
     }
-    least[column] = kLeastPivot * at(column, column);
+    least[column] = kMinPivot * at(column, column);
   }
   for (Index column = own; column < stride; ++column) at(column, column) = 1;
 }

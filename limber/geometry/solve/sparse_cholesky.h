@@ -35,7 +35,7 @@ class SparseCholesky {
   // x: #V rows of kColumns; the row of an unknown is place(unknown).
   void solve(double* x, int columns = kColumns) const;
 
-  Index place(Index unknown) const { return tree_.placeOf[unknown]; }
+  Index rowOf(Index unknown) const { return tree_.positionOf[unknown]; }
   std::size_t factorEntries() const { return factorSize_; }  // doubles held, padding and all
 
  private:

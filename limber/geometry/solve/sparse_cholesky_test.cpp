@@ -45,7 +45,7 @@ Sparse randomMatrix(int size, int entries, unsigned seed) {
 Eigen::MatrixXd solve(const SparseCholesky& cholesky, const Eigen::MatrixXd& right) {
   std::vector<double> x(static_cast<std::size_t>(right.rows()) * SparseCholesky::kColumns, 0.0);
   const auto at = [&](Eigen::Index row, Eigen::Index column) -> double& {
-    return x[cholesky.place(static_cast<Index>(row)) * std::size_t{SparseCholesky::kColumns} +
+    return x[cholesky.rowOf(static_cast<Index>(row)) * std::size_t{SparseCholesky::kColumns} +
              static_cast<std::size_t>(column)];
   };
   for (Eigen::Index i = 0; i < right.rows(); ++i) {

@@ -34,15 +34,15 @@ constexpr double kMinStride = 0.15;          // of the extent of the feet, the g
 constexpr std::size_t kSampled = 200;        // vertices or triangles of a component
 constexpr double kStrayArea = 0.01;          // of the figure's largest component: smaller ones may lie anywhere
 
-constexpr std::size_t kMaxShells = 64;      // components, the largest
-constexpr double kMinCopyArea = 0.25;       // of the outer surface
-constexpr double kMaxCopyArea = 1.1;        // of the outer surface: what has more is no copy, but a figure in a box
-constexpr double kMinEnclosed = 0.75;       // of a shell's area within the outer surface
-constexpr double kMostOfSurface = 0.5;      // of the figure's area that has shells
-constexpr double kMaxRest = 0.05;           // of the figure's area, of what else lies within
-constexpr double kMaxShellDistance = 0.03;  // sizes of the outer surface, of a shell from it in the mean
-constexpr double kMaxBareDistance = 0.06;   // sizes of the outer surface, from it to a shell below it
-constexpr double kMinCovered = 0.85;        // of the outer surface's area with a shell below it
+constexpr std::size_t kMaxShells = 64;       // components, the largest
+constexpr double kMinCopyArea = 0.25;        // of the outer surface
+constexpr double kMaxCopyArea = 1.1;         // of the outer surface: what has more is no copy, but a figure in a box
+constexpr double kMinEnclosed = 0.75;        // of a shell's area within the outer surface
+constexpr double kMaxSurfaceFraction = 0.5;  // of the figure's area that has shells
+constexpr double kMaxRest = 0.05;            // of the figure's area, of what else lies within
+constexpr double kMaxShellDistance = 0.03;   // sizes of the outer surface, of a shell from it in the mean
+constexpr double kMaxBareDistance = 0.06;    // sizes of the outer surface, from it to a shell below it
+constexpr double kMinCovered = 0.85;         // of the outer surface's area with a shell below it
 
 using Component = SurfaceComponent;
 
@@ -213,7 +213,7 @@ bool isStep(const TriMesh& mesh, const Component& component) {
 }
 
 // Whether all others stand on a component with feet, +Y up.
-bool standsOn(const TriMesh& mesh, const Component& component, std::span<const Component> others) {
+bool restsOn(const TriMesh& mesh, const Component& component, std::span<const Component> others) {
   const Figure figure(mesh, others);
   const double height = figure.box.size().y(), top = component.box.max.y();
   if (!figure.isHollow || component.box.size().y() > kMaxPedestal * height) return false;
@@ -264,7 +264,7 @@ std::vector<Component> surroundingsAmong(const TriMesh& mesh, std::vector<Compon
     steps.push_back(others[*lowest]);
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(*lowest));
     if (!isStep(mesh, steps.back())) break;
-    if (!standsOn(mesh, steps.back(), others)) continue;
+    if (!restsOn(mesh, steps.back(), others)) continue;
     surroundings.insert(surroundings.end(), steps.begin(), steps.end());
     break;
   }
@@ -272,7 +272,7 @@ std::vector<Component> surroundingsAmong(const TriMesh& mesh, std::vector<Compon
 }
 
 // How much of a component's area lies within what a winding number is of.
-double enclosedShare(const TriMesh& mesh, const Component& component, const WindingNumber& winding) {
+double enclosedFraction(const TriMesh& mesh, const Component& component, const WindingNumber& winding) {
   double area = 0, enclosed = 0;
   for (const AreaSample& sample : areaSamplesOf(mesh, component)) {
     area += sample.area;
@@ -293,7 +293,7 @@ bool isInnerShell(const TriMesh& mesh, const Component& inner, const Component& 
   if (inner.area < kMinCopyArea * outer.area || inner.area > kMaxCopyArea * outer.area) return false;
   if (!isWithin(inner.box, outer.box, kMaxShellDistance * size)) return false;
   const TriMesh outerMesh = meshOf(mesh, outer);
-  if (enclosedShare(mesh, inner, WindingNumber(outerMesh)) < kMinEnclosed) return false;
+  if (enclosedFraction(mesh, inner, WindingNumber(outerMesh)) < kMinEnclosed) return false;
   const Bvh outerSurface(outerMesh), innerSurface(mesh, inner.triangles);
   double area = 0, distance = 0;
   for (const AreaSample& sample : areaSamplesOf(mesh, inner)) {
@@ -346,7 +346,7 @@ Shells takeInnerShells(const TriMesh& mesh, std::vector<Component>& components) 
   double all = 0, doubled = 0;
   for (const Component& component : components) all += component.area;
   for (const Component& outer : shells.outers) doubled += outer.area;
-  if (doubled < kMostOfSurface * all) return shells;
+  if (doubled < kMaxSurfaceFraction * all) return shells;
   std::vector<WindingNumber> within;
   for (const Component& outer : shells.outers) within.emplace_back(meshOf(mesh, outer));
   const auto hasCopy = [&](const Component& component) {
@@ -356,7 +356,7 @@ Shells takeInnerShells(const TriMesh& mesh, std::vector<Component>& components) 
   const auto isWithinOne = [&](const Component& component) {
     return component.area < kMaxRest * all && !hasCopy(component) &&
            std::any_of(within.begin(), within.end(), [&](const WindingNumber& winding) {
-             return enclosedShare(mesh, component, winding) >= kMinEnclosed;
+             return enclosedFraction(mesh, component, winding) >= kMinEnclosed;
            });
   };
   const auto rest = std::stable_partition(components.begin(), components.end(),

@@ -56,10 +56,10 @@ class Copies {
 
   std::vector<InnerCopy> find() {
     std::vector<Candidate> candidates = candidatesByBoxes();
-    if (!isMost(candidates)) return {};
+    if (!isMax(candidates)) return {};
     rateSameTriangles(candidates);
     const std::vector<Candidate> pairs = bestPairs(candidates);
-    if (!isMost(pairs)) return {};
+    if (!isMax(pairs)) return {};
     return withOuterFirst(pairs);
   }
 
@@ -102,7 +102,7 @@ class Copies {
 
   // Whether the components in any of the pairs are nearly all of the surface. Small ones, as leaves, have others of the
   // same shape near them without being copies.
-  bool isMost(const std::vector<Candidate>& pairs) const {
+  bool isMax(const std::vector<Candidate>& pairs) const {
     std::vector<bool> isIn(components_.size(), false);
     for (const Candidate& pair : pairs) isIn[pair.a] = isIn[pair.b] = true;
     double area = 0;

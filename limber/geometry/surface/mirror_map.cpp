@@ -14,9 +14,9 @@ namespace limber {
 
 namespace {
 
-constexpr double kTolerance = 3e-3;   // of the longest side, between a mirrored vertex and its image
-constexpr double kEnough = 0.98;      // of vertices and of area
-constexpr double kLeastWidth = 0.01;  // mean distance from the plane, of the longest side: less is a sheet in the plane
+constexpr double kTolerance = 3e-3;  // of the longest side, between a mirrored vertex and its image
+constexpr double kEnough = 0.98;     // of vertices and of area
+constexpr double kMinWidth = 0.01;   // mean distance from the plane, of the longest side: less is a sheet in the plane
 constexpr std::size_t kSamples = 400;
 
 class MirrorFinder {
@@ -119,7 +119,7 @@ bool MirrorFinder::enough(const MirrorMap& map) const {
   }
   const double count = static_cast<double>(map.image.size());
   return static_cast<double>(matchedCount) >= kEnough * count && matchedArea >= kEnough * area &&
-         width >= kLeastWidth * side_ * count;
+         width >= kMinWidth * side_ * count;
 }
 
 // Vertices that are not each other's nearest, one after the other, take what is left within reach.

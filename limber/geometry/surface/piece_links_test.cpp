@@ -106,9 +106,9 @@ TEST(PieceLinks, JoinThousandsOfPiecesIntoOne) {
   TriMesh mesh;
   TestRandom random(2);
   for (int i = 0; i < 3000; ++i) {
-    const Vec3 place(100 * random.unit(), 100 * random.unit(), 100 * random.unit());
-    mesh = i % 500 == 0 ? testing::joined(mesh, testing::octahedron(), place.cast<float>()) : mesh;
-    mesh.positions.push_back(place.cast<float>());
+    const Vec3 position(100 * random.unit(), 100 * random.unit(), 100 * random.unit());
+    mesh = i % 500 == 0 ? testing::joined(mesh, testing::octahedron(), position.cast<float>()) : mesh;
+    mesh.positions.push_back(position.cast<float>());
   }
   std::vector<VertexPair> edges = surfaceEdges(mesh).edges;
   const std::vector<VertexPair> links = pieceLinks(mesh.positions, edges);

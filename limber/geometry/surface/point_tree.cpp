@@ -132,13 +132,13 @@ Index PointTree::nearest(const Vec3f& p, float radius) const {
 }
 
 void PointTree::takeOut(Index point) {
-  if (placeOf_.empty()) {
-    placeOf_.resize(order_.size());
-    for (std::size_t i = 0; i < order_.size(); ++i) placeOf_[order_[i]] = static_cast<Index>(i);
+  if (slotOf_.empty()) {
+    slotOf_.resize(order_.size());
+    for (std::size_t i = 0; i < order_.size(); ++i) slotOf_[order_[i]] = static_cast<Index>(i);
   }
-  const std::size_t place = placeOf_[point];
-  order_[place] = kNoIndex;
-  Part part = leaves_ + place / kLeafSize;
+  const std::size_t slot = slotOf_[point];
+  order_[slot] = kNoIndex;
+  Part part = leaves_ + slot / kLeafSize;
   boundLeaf(part);
   while ((part /= 2) > 0) boundInner(part);
 }

@@ -73,7 +73,7 @@ class PointTree {
   std::span<const Vec3f> points_;
   std::span<const Index> pieces_;
   std::vector<Index> order_;    // kNoIndex where a point was taken out
-  std::vector<Index> placeOf_;  // in the order, of each point; made when the first is taken out
+  std::vector<Index> slotOf_;   // in the order, of each point; made when the first is taken out
   std::size_t leaves_ = 1;      // a power of two; node i has children 2i and 2i + 1, leaf j is node leaves_ + j
   std::vector<Box3> boxes_;     // per node
   std::vector<Index> uniform_;  // per node: the piece of all its points, kNoIndex if mixed
@@ -98,9 +98,9 @@ void PointTree::visit(Part a, Part b, float distance, const Reach& reach, const 
   const auto add = [&](Part first, Part second) {
     if (uniform_[first] != kNoIndex && uniform_[first] == uniform_[second]) return;
     const Visit added{distanceSquared(first, second), first, second};
-    std::size_t place = count++;
-    for (; place > 0 && added.distance < visits[place - 1].distance; --place) visits[place] = visits[place - 1];
-    visits[place] = added;
+    std::size_t slot = count++;
+    for (; slot > 0 && added.distance < visits[slot - 1].distance; --slot) visits[slot] = visits[slot - 1];
+    visits[slot] = added;
   };
   add(2 * a, 2 * b);
   add(2 * a + 1, 2 * b + 1);

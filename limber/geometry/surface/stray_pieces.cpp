@@ -17,8 +17,8 @@ constexpr double kTiny = 0.02;  // of the area of the largest piece in what a st
 // Clusters as a forest: each is a piece, or what two clusters became. Parents come after their children.
 struct Cluster {
   double area = 0;
-  double largest = 0;  // area of a piece in it
-  double share = 1;    // within its parent
+  double largest = 0;   // area of a piece in it
+  double fraction = 1;  // within its parent
   Index parent = kNoIndex;
 };
 
@@ -48,7 +48,7 @@ class ClusterForest {
     const Cluster& large = clusters_[firstIsSmaller ? second : first];
     if (small.area < kTiny * large.largest && small.area < distanceSquared) {
       const double nearness = small.area / distanceSquared;
-      small.share = nearness * nearness;
+      small.fraction = nearness * nearness;
     }
     const Cluster both = {small.area + large.area, std::max(small.largest, large.largest), 1, kNoIndex};
     clusters_[first].parent = clusters_[second].parent = joined;
@@ -56,13 +56,13 @@ class ClusterForest {
     clusterOf_[sets_.find(a)] = joined;
   }
 
-  std::vector<double> sharesOfPoints() {
+  std::vector<double> fractionsOfPoints() {
     for (std::size_t c = clusters_.size(); c-- > 0;) {
-      if (clusters_[c].parent != kNoIndex) clusters_[c].share *= clusters_[clusters_[c].parent].share;
+      if (clusters_[c].parent != kNoIndex) clusters_[c].fraction *= clusters_[clusters_[c].parent].fraction;
     }
-    std::vector<double> shares(pieceOf_.size());
-    for (std::size_t v = 0; v < shares.size(); ++v) shares[v] = clusters_[pieceOf_[v]].share;
-    return shares;
+    std::vector<double> fractions(pieceOf_.size());
+    for (std::size_t v = 0; v < fractions.size(); ++v) fractions[v] = clusters_[pieceOf_[v]].fraction;
+    return fractions;
   }
 
  private:
@@ -74,8 +74,8 @@ class ClusterForest {
 
 }  // namespace
 
-std::vector<double> strayShares(std::span<const Vec3f> points, std::span<const double> areas,
-                                std::span<const VertexPair> edges, std::span<const VertexPair> links) {
+std::vector<double> strayFractions(std::span<const Vec3f> points, std::span<const double> areas,
+                                   std::span<const VertexPair> edges, std::span<const VertexPair> links) {
   ClusterForest forest(areas, edges);
   std::vector<std::pair<double, VertexPair>> byLength;
   byLength.reserve(links.size());
@@ -84,7 +84,7 @@ std::vector<double> strayShares(std::span<const Vec3f> points, std::span<const d
   }
   std::sort(byLength.begin(), byLength.end());
   for (const auto& [distanceSquared, link] : byLength) forest.join(link[0], link[1], distanceSquared);
-  return forest.sharesOfPoints();
+  return forest.fractionsOfPoints();
 }
 
 std::optional<TriMesh> withoutStrays(const TriMesh& mesh) {
@@ -93,11 +93,11 @@ std::optional<TriMesh> withoutStrays(const TriMesh& mesh) {
   vertexComponents(mesh, &pieces);
   if (pieces < 2) return std::nullopt;
   const SurfaceEdges surface = surfaceEdges(mesh);
-  const std::vector<double> shares =
-      strayShares(mesh.positions, vertexAreas(mesh), surface.edges, pieceLinks(mesh.positions, surface.edges));
+  const std::vector<double> fractions =
+      strayFractions(mesh.positions, vertexAreas(mesh), surface.edges, pieceLinks(mesh.positions, surface.edges));
   TriMesh kept{mesh.positions, {}};
   for (const Triangle& t : mesh.triangles) {
-    if (shares[t[0]] >= kStray) kept.triangles.push_back(t);
+    if (fractions[t[0]] >= kStray) kept.triangles.push_back(t);
   }
   if (kept.triangleCount() == mesh.triangleCount()) return std::nullopt;
   return kept;

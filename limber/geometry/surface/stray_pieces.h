@@ -19,8 +19,8 @@ namespace limber {
 // edges   of the surface
 // links   pieceLinks(points, edges)
 // Cost: O(#V + #edges + #links log #links).
-std::vector<double> strayShares(std::span<const Vec3f> points, std::span<const double> areas,
-                                std::span<const VertexPair> edges, std::span<const VertexPair> links);
+std::vector<double> strayFractions(std::span<const Vec3f> points, std::span<const double> areas,
+                                   std::span<const VertexPair> edges, std::span<const VertexPair> links);
 
 // The same points with only those triangles that count for at least a half; nothing where all do. Cost: O(#V + #F) for
 // a model of one piece, else that of surfaceEdges, pieceLinks and strayShares.

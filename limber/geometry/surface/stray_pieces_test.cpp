@@ -21,18 +21,18 @@ struct Line {
     areas.insert(areas.end(), 2, 0.5 * area);
     edges.push_back({first, first + 1});
   }
-  std::vector<double> shares() const { return strayShares(points, areas, edges, pieceLinks(points, edges)); }
+  std::vector<double> fractions() const { return strayFractions(points, areas, edges, pieceLinks(points, edges)); }
 };
 
 TEST(StrayPieces, ATinyPieceFarAwayCountsLittle) {
   Line line;
   line.addPiece(0, 1, 1);
   line.addPiece(1.5f, 1.6f, 0.01);
-  const std::vector<double> shares = line.shares();
-  EXPECT_EQ(shares[0], 1);
-  EXPECT_EQ(shares[1], 1);
-  EXPECT_NEAR(shares[2], 0.0016, 1e-9);
-  EXPECT_NEAR(shares[3], 0.0016, 1e-9);
+  const std::vector<double> fractions = line.fractions();
+  EXPECT_EQ(fractions[0], 1);
+  EXPECT_EQ(fractions[1], 1);
+  EXPECT_NEAR(fractions[2], 0.0016, 1e-9);
+  EXPECT_NEAR(fractions[3], 0.0016, 1e-9);
 }
 
 TEST(StrayPieces, NearAndLargePiecesCountFully) {
@@ -40,22 +40,22 @@ TEST(StrayPieces, NearAndLargePiecesCountFully) {
   line.addPiece(0, 1, 1);
   line.addPiece(1.05f, 1.15f, 0.01);  // nearer than it is large
   line.addPiece(-9, -8, 0.1);         // a tenth of all: a part, however far
-  EXPECT_EQ(line.shares(), std::vector<double>(6, 1));
+  EXPECT_EQ(line.fractions(), std::vector<double>(6, 1));
 }
 
 TEST(StrayPieces, ManySpecksTogetherAreStrayStill) {
   Line line;
   line.addPiece(0, 1, 1);
   for (int i = 0; i < 8; ++i) line.addPiece(2 + 0.1f * i, 2.01f + 0.1f * i, 1e-4);
-  const std::vector<double> shares = line.shares();
-  EXPECT_EQ(shares[0], 1);
-  for (std::size_t v = 2; v < shares.size(); ++v) EXPECT_NEAR(shares[v], 6.4e-7, 1e-12);  // 1 from what is large
+  const std::vector<double> fractions = line.fractions();
+  EXPECT_EQ(fractions[0], 1);
+  for (std::size_t v = 2; v < fractions.size(); ++v) EXPECT_NEAR(fractions[v], 6.4e-7, 1e-12);  // 1 from what is large
 }
 
 TEST(StrayPieces, AmongEqualPiecesNoneIsStray) {
   Line line;
   for (int i = 0; i < 200; ++i) line.addPiece(static_cast<float>(i), i + 0.1f, 1e-3);
-  EXPECT_EQ(line.shares(), std::vector<double>(400, 1));
+  EXPECT_EQ(line.fractions(), std::vector<double>(400, 1));
 }
 
 TEST(StrayPieces, WhatFloatsAboutIsLeftOut) {

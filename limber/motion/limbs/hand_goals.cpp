@@ -21,7 +21,7 @@ constexpr double kSoftReach = 0.96;
 // By whole motions of boxing and bending, in which arms flipped:
 constexpr double kSoftFold = 0.45;  // arm lengths; 0.3 to 0.6; below it, and below the pose's own, folding softens
 constexpr double kFold = 0.6;       // fraction of that; 0.3 to 0.9; nearest of a hand to its shoulder: else elbows snap
-constexpr double kMostTouch = 0.5;  // arm lengths; 0.2 to 1; displacement of a hand from its joint angles
+constexpr double kMaxTouch = 0.5;   // arm lengths; 0.2 to 1; displacement of a hand from its joint angles
 
 // `wanted` beyond `edge`, but the slower the nearer it comes to `end`.
 double towards(double end, double edge, double wanted) {
@@ -34,13 +34,13 @@ double closeness(double distance, const TouchDistances& of) {
 }
 
 // Short ways stay about as they are.
-Vec3 atMost(const Vec3& way, double most) {
-  return way / std::pow(1 + std::pow(way.norm() / most, 8), 1.0 / 8);
+Vec3 atMost(const Vec3& displacement, double most) {
+  return displacement / std::pow(1 + std::pow(displacement.norm() / most, 8), 1.0 / 8);
 }
 
 }  // namespace
 
-HandGoals::HandGoals(const RetargetSetup& setup, const RootPlacer& root) : setup_(setup) {
+HandGoals::HandGoals(const RetargetSetup& setup, const RootPositioner& root) : setup_(setup) {
   if (!setup.person) return;
   using body_part::arm;
   using body_part::leg;
@@ -108,26 +108,27 @@ Vec3 HandGoals::touchOf(const Limb& arm, const std::vector<Surface>& surfaces, c
 
 void HandGoals::softenReach(Limb& arm, const BodyFrame& target) const {
   const Vec3 shoulder = target.positions[arm.upper], own = target.positions[arm.end] - shoulder;
-  const Vec3 way = arm.goal - shoulder;
+  const Vec3 displacement = arm.goal - shoulder;
   const double far = std::max(own.norm(), kSoftReach * arm.length), near = std::min(own.norm(), kSoftFold * arm.length);
-  const double wanted = way.norm();
+  const double wanted = displacement.norm();
   if (wanted > far) {
-    arm.goal = shoulder + towards(kMaxStretch * arm.length, far, wanted) / wanted * way;
+    arm.goal = shoulder + towards(kMaxStretch * arm.length, far, wanted) / wanted * displacement;
   } else if (wanted < near) {
-    const Vec3 line = wanted > 0 ? way.normalized() : own.normalized();
+    const Vec3 line = wanted > 0 ? displacement.normalized() : own.normalized();
     arm.goal = shoulder + towards(kFold * near, near, wanted) * line;
   }
 }
 
 void HandGoals::set(const BodyFrame& source, const BodyFrame& target, double seconds) {
   const double reach = setup_.options.reach;
-  const Vec3 pelvis = pelvisOf(setup_.map, MapSide::kSource, source.positions), place = setup_.placeOf(pelvis);
+  const Vec3 pelvis = pelvisOf(setup_.map, MapSide::kSource, source.positions), position = setup_.positionOf(pelvis);
   std::array<Vec3, 2> touches = {Vec3::Zero(), Vec3::Zero()};
   for (std::size_t a = 0; a < arms_.size(); ++a) {
     Limb& arm = arms_[a];
     arm.goal = target.positions[arm.end];
     arm.wanted = reach != 0;
-    if (arm.wanted) arm.goal += reach * (place + setup_.scale * (source.positions[arm.sourceEnd] - pelvis) - arm.goal);
+    if (arm.wanted)
+      arm.goal += reach * (position + setup_.scale * (source.positions[arm.sourceEnd] - pelvis) - arm.goal);
     if (setup_.options.contacts) touches[a] = touchOf(arm, surfaces_[a], source, target);
   }
   if (!setup_.options.contacts) return;
@@ -140,7 +141,7 @@ void HandGoals::set(const BodyFrame& source, const BodyFrame& target, double sec
   }
   for (std::size_t a = 0; a < arms_.size(); ++a) {
     Sprung& follow = follows_[a];
-    follow.drawTo(atMost(touches[a], kMostTouch * arms_[a].length), kArmRate, seconds);
+    follow.drawTo(atMost(touches[a], kMaxTouch * arms_[a].length), kArmRate, seconds);
     if (follow.value.norm() < 1e-9 * setup_.targetHipHeight) continue;
     arms_[a].goal += follow.value;
     arms_[a].wanted = true;

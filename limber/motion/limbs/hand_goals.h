@@ -22,7 +22,7 @@ inline constexpr double kArmRate = 8;
 class HandGoals {
  public:
   // None for others than people. Both must outlive this.
-  HandGoals(const RetargetSetup& setup, const RootPlacer& root);
+  HandGoals(const RetargetSetup& setup, const RootPositioner& root);
 
   // Hands that are close to the other hand, the head, the trunk, a thigh or the other forearm in the source are as
   // close in the result for how thick that is there, as far as that takes them half an arm's length from their joint

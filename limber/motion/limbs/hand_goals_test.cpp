@@ -26,7 +26,7 @@ class HandGoalsTest : public ::testing::Test {
   template <typename Check>
   void eachFrame(const Skeleton& person, const Check& check) {
     const RetargetSetup setup(source, person, matchSkeletons(source, person), {});
-    const RootPlacer root(setup);
+    const RootPositioner root(setup);
     HandGoals hands(setup, root);
     BodyFrame from, to;
     for (int f = 0; f < 120; ++f) {

@@ -13,7 +13,7 @@ namespace {
 constexpr double kStraight = 0.5;       // radians; 0.3 to 0.8; added to bends, squared: else nearly straight knees snap
 constexpr double kSoftStraight = 0.04;  // radians squared; 0.01 to 0.1; over which that ends without a kink
 constexpr double kSoftFold = 0.1;       // radians; 0.05 to 0.3; over which the bend comes to its most
-constexpr double kMostWithHock = 2.8;   // radians; 2.4 to pi; of knee and hock together, a right angle and a bit each
+constexpr double kMaxWithHock = 2.8;    // radians; 2.4 to pi; of knee and hock together, a right angle and a bit each
 
 struct Bones {
   double all = 0, longest = 0;
@@ -42,7 +42,7 @@ LegBend::Chain::Chain(const Skeleton& skeleton, const NeutralPose& neutral, cons
   if (leg.hock) {
     const Bones bones = bonesOf(skeleton, rest, leg);
     first = second = 0.5 * bones.all;
-    most = std::min(kMostWithHock, bendAt(std::max(2 * bones.longest - bones.all, 0.0)));
+    most = std::min(kMaxWithHock, bendAt(std::max(2 * bones.longest - bones.all, 0.0)));
   }
   atRest = bend(neutral.positions);
 }

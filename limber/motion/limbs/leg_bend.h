@@ -10,7 +10,7 @@
 namespace limber {
 
 // Radians; pi / 2 to 2.6; the bend of a knee: it folds further only where a body lies on its legs; set by hand.
-inline constexpr double kMostBend = 2 * kPi / 3;
+inline constexpr double kMaxBend = 2 * kPi / 3;
 
 class LegBend {
  public:

@@ -12,7 +12,7 @@ bool anyFootDriven(std::span<const Leg> legs) {
   return std::any_of(legs.begin(), legs.end(), [](const Leg& leg) { return leg.footDriven; });
 }
 
-std::optional<Limb> makeLimb(const RetargetSetup& setup, const RootPlacer& root, const LegJoints& source,
+std::optional<Limb> makeLimb(const RetargetSetup& setup, const RootPositioner& root, const LegJoints& source,
                              const LegJoints& target) {
   Limb limb;
   limb.upper = target.upper;
@@ -28,11 +28,11 @@ std::optional<Limb> makeLimb(const RetargetSetup& setup, const RootPlacer& root,
   if (!(upperLength > 0) || !(lowerLength > 0)) return std::nullopt;
   limb.length = upperLength + lowerLength;
   limb.folded = std::sqrt(upperLength * upperLength + lowerLength * lowerLength +
-                          2 * upperLength * lowerLength * std::cos(kMostBend));
+                          2 * upperLength * lowerLength * std::cos(kMaxBend));
   return limb;
 }
 
-std::optional<Limb> findLimb(const RetargetSetup& setup, const RootPlacer& root, PartKind kind, Side side) {
+std::optional<Limb> findLimb(const RetargetSetup& setup, const RootPositioner& root, PartKind kind, Side side) {
   const auto find = [&](Segment segment) { return setup.map.find({kind, side, 0, segment, 0}); };
   const JointMatch *u = find(Segment::kUpper), *l = find(Segment::kMiddle), *e = find(Segment::kEnd);
   if (!u || !l || !e) return std::nullopt;

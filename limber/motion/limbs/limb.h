@@ -35,7 +35,7 @@ struct Leg : Limb {
   FootContact contact;                                 // of the source's foot in this frame
   double ankleFloor = 0, toesFloor = 0;                // below which neither goes in this frame
   double changed = 0;                                  // 0 to 1, smoothly, how much its goal is one (Pelvis::changeOf)
-  Vec3 place = Vec3::Zero();                           // of the end, by the joint angles, or foot-driven
+  Vec3 position = Vec3::Zero();                        // of the end, by the joint angles, or foot-driven
   double bentReach = 0;                                // footDriven: from hip to end if bent as the source's (LegBend)
   // footDriven: of the source's foot from where it stands, hip heights; more of people who lie down.
   double lift = 0;
@@ -53,10 +53,10 @@ inline constexpr double kLifted = 0.6;
 bool anyFootDriven(std::span<const Leg> legs);
 
 // None where its joints do not hang on each other, or a bone has no length.
-std::optional<Limb> makeLimb(const RetargetSetup& setup, const RootPlacer& root, const LegJoints& source,
+std::optional<Limb> makeLimb(const RetargetSetup& setup, const RootPositioner& root, const LegJoints& source,
                              const LegJoints& target);
 // Of a person's matched leg or arm, from hip to foot or shoulder to hand; none as well where one of them is not
 // matched.
-std::optional<Limb> findLimb(const RetargetSetup& setup, const RootPlacer& root, PartKind kind, Side side);
+std::optional<Limb> findLimb(const RetargetSetup& setup, const RootPositioner& root, PartKind kind, Side side);
 
 }  // namespace limber

@@ -25,12 +25,12 @@ constexpr double kRiseRate = 40;  // 1/seconds; 20 to 80; of an animal's pelvis,
 // faster it falls within up to kMostSoft more: what it falls in kFallSeconds. By jerk on the shared pairs of a motion
 // and a person (at most 1.1 times the source's on 526 of 528).
 constexpr double kSoftGround = 0.006;  // 0.002 to 0.01
-constexpr double kMostSoft = 0.04;     // 0.02 to 0.08
+constexpr double kMaxSoftness = 0.04;  // 0.02 to 0.08
 constexpr double kFallSeconds = 0.03;  // seconds; 0.01 to 0.06
 constexpr double kFallRate = 40;       // 1/seconds; 20 to 80; by which that speed is smoothed
 // Fractions of that softness that a planted foot loses; 0 to 1; the point that is pinned, and the other; by jerk on the
 // shared people.
-constexpr double kFirmHeld = 0.9, kFirmBeside = 0.2;
+constexpr double kFirmPinned = 0.9, kFirmBeside = 0.2;
 // Hip heights of the source; 0.001 to 0.01; where its foot sinks below where it stands; set on a wolf's idle as a
 // horse, which trembled before.
 constexpr double kSoftLowered = 0.003;
@@ -69,7 +69,7 @@ WatchedFoot watched(const Leg& leg) {
 
 }  // namespace
 
-LimbGoals::LimbGoals(const RetargetSetup& setup, const RootPlacer& root)
+LimbGoals::LimbGoals(const RetargetSetup& setup, const RootPositioner& root)
     : setup_(setup), root_(root), pelvis_(setup, root), lift_(setup), tail_(setup, root), contacts_(setup) {
   if (setup.person) {
     addPersonsLegs(root);
@@ -79,7 +79,7 @@ LimbGoals::LimbGoals(const RetargetSetup& setup, const RootPlacer& root)
   active_ = (setup.person || !legs_.empty()) && !setup.sameBody;
 }
 
-void LimbGoals::addPersonsLegs(const RootPlacer& root) {
+void LimbGoals::addPersonsLegs(const RootPositioner& root) {
   for (const Side side : kSides) {
     const auto limb = findLimb(setup_, root, PartKind::kLeg, side);
     if (!limb) continue;
@@ -102,7 +102,7 @@ void LimbGoals::addPersonsLegs(const RootPlacer& root) {
   }
 }
 
-void LimbGoals::addAnimalsLegs(const RootPlacer& root) {
+void LimbGoals::addAnimalsLegs(const RootPositioner& root) {
   std::vector<AnimalLeg> hindFirst = setup_.animalLegs;
   std::stable_partition(hindFirst.begin(), hindFirst.end(),
                         [&](const AnimalLeg& leg) { return !pelvis_.trunk().isFore(leg.target.upper); });
@@ -151,7 +151,7 @@ void LimbGoals::addLeg(Leg leg) {
     leg.sourceToesGround = sourceGround(*leg.sourceToes);
   }
   if (leg.tip) leg.toesGround = targetGround(*leg.tip);
-  leg.footPitch = footPitchShare(setup_, leg);
+  leg.footPitch = footPitchFraction(setup_, leg);
   legs_.push_back(leg);
   states_.emplace_back();
   contacts_.watch(watched(leg));
@@ -170,9 +170,9 @@ void LimbGoals::readFoot(Leg& leg, FootState& state, const BodyFrame& source, co
   const FootLock::Frame before = foot;
   foot.anchor = leg.contact.anchor;
   foot.flat = leg.contact.flat;
-  leg.place = target.positions[leg.end];
-  if (leg.footDriven) leg.place = footDrivenPlace(leg, source, target);
-  foot.ankle = foot.toes = leg.place;
+  leg.position = target.positions[leg.end];
+  if (leg.footDriven) leg.position = footDrivenPosition(leg, source, target);
+  foot.ankle = foot.toes = leg.position;
   foot.ankleGround = leg.ankleGround - loweredBy(leg.sourceAnkleGround, source.positions[leg.sourceEnd]);
   if (leg.toes) {
     foot.toes += target.positions[*leg.toes] - target.positions[leg.end];
@@ -188,23 +188,23 @@ void LimbGoals::readFoot(Leg& leg, FootState& state, const BodyFrame& source, co
 
 // Seen from its hip, which a longer or shorter trunk that turns takes further or less far; how it stands under it at
 // rest turns with the body. Up and down the source's way.
-Vec3 LimbGoals::footDrivenPlace(const Leg& leg, const BodyFrame& source, const BodyFrame& target) const {
+Vec3 LimbGoals::footDrivenPosition(const Leg& leg, const BodyFrame& source, const BodyFrame& target) const {
   const std::vector<Vec3>&from = setup_.sourceNeutral.restPositions, &to = setup_.targetNeutral.restPositions;
   const Vec3 atRest = to[leg.end] - to[leg.upper] - setup_.scale * (from[leg.sourceEnd] - from[leg.sourceUpper]);
-  const Vec3 way = setup_.scale * (source.positions[leg.sourceEnd] - source.positions[leg.sourceUpper]);
-  Vec3 place = target.positions[leg.upper] + way + turnedAsBody(atRest, leg, source);
-  const double stands = setup_.person ? leg.ankleGround : to[leg.end].y();
-  const double sourceStands = setup_.person ? leg.sourceAnkleGround : from[leg.sourceEnd].y();
-  place.y() = stands + setup_.scale * (source.positions[leg.sourceEnd].y() - sourceStands);
-  return place;
+  const Vec3 displacement = setup_.scale * (source.positions[leg.sourceEnd] - source.positions[leg.sourceUpper]);
+  Vec3 position = target.positions[leg.upper] + displacement + turnedAsBody(atRest, leg, source);
+  const double restHeight = setup_.person ? leg.ankleGround : to[leg.end].y();
+  const double sourceRestHeight = setup_.person ? leg.sourceAnkleGround : from[leg.sourceEnd].y();
+  position.y() = restHeight + setup_.scale * (source.positions[leg.sourceEnd].y() - sourceRestHeight);
+  return position;
 }
 
 // About the vertical, as the source's body is where the leg hangs on it. One that lies on its back faces nowhere.
-Vec3 LimbGoals::turnedAsBody(const Vec3& way, const Leg& leg, const BodyFrame& source) const {
+Vec3 LimbGoals::turnedAsBody(const Vec3& displacement, const Leg& leg, const BodyFrame& source) const {
   const Quat turn = turnOfBody(leg, source);
   const double size = turn.w() * turn.w() + turn.y() * turn.y();
   if (!(size > 0)) return Vec3::Zero();
-  return smoothStep(size / kFaces) * (Quat(turn.w(), 0, turn.y(), 0).normalized() * way);
+  return smoothStep(size / kFaces) * (Quat(turn.w(), 0, turn.y(), 0).normalized() * displacement);
 }
 
 Quat LimbGoals::turnOfBody(const Leg& leg, const BodyFrame& source) const {
@@ -223,8 +223,9 @@ void LimbGoals::readFootDriven(Leg& leg, FootState& state, const BodyFrame& sour
     const double leans = (body * Vec3::UnitX()).y();
     leg.upright = 1 - leans * leans;
   }
-  const Vec3 way = source.positions[leg.sourceEnd] - state.sourceEnd;
-  const double speed = seconds > 0 ? std::hypot(way.x(), way.z()) / (seconds * setup_.sourceHipHeight) : 0;
+  const Vec3 displacement = source.positions[leg.sourceEnd] - state.sourceEnd;
+  const double speed =
+      seconds > 0 ? std::hypot(displacement.x(), displacement.z()) / (seconds * setup_.sourceHipHeight) : 0;
   state.foot.slip = 1 / (1 + std::pow((setup_.person ? kPersonSlipSpeed : kSlipSpeed) / speed, kSlipPower));
   state.sourceEnd = source.positions[leg.sourceEnd];
 }
@@ -236,9 +237,9 @@ void LimbGoals::followFall(double down, double seconds, Fall& fall) {
 
 // Animals that sit lay the whole foot down: as far as a joint in the source is below where it is when standing, it may
 // be in the target.
-double LimbGoals::loweredBy(double sourceGround, const Vec3& sourcePlace) const {
+double LimbGoals::loweredBy(double sourceGround, const Vec3& sourcePosition) const {
   const double soft = kSoftLowered * setup_.sourceHipHeight;
-  return setup_.person ? 0 : setup_.scale * softPositive(sourceGround - sourcePlace.y(), soft);
+  return setup_.person ? 0 : setup_.scale * softPositive(sourceGround - sourcePosition.y(), soft);
 }
 
 void LimbGoals::adaptPose(const BodyFrame& source, double seconds, Pose& target, BodyFrame& frame) {
@@ -289,7 +290,7 @@ void LimbGoals::carryFeet(const BodyFrame& target, double seconds) {
   }
   const Pelvis::Move move = pelvis_.moveFor(legs_, target, nextRise(target, seconds).value);
   for (std::size_t i = 0; i < legs_.size(); ++i) {
-    states_[i].carried = legs_[i].footDriven ? Vec3(Vec3::Zero()) : pelvis_.hipWay(move, legs_[i], target);
+    states_[i].carried = legs_[i].footDriven ? Vec3(Vec3::Zero()) : pelvis_.hipDisplacement(move, legs_[i], target);
     if (setup_.person) states_[i].carried.y() *= kCarriedUp;
   }
 }
@@ -309,7 +310,7 @@ void LimbGoals::keepAboveGround(Leg& leg, const FootLock::Frame& foot, const Foo
   const double toesOver = foot.toes.y() - foot.ankle.y();
   const auto raise = [&](double under, const Fall& fall, double firm) {
     const double height = setup_.targetHipHeight, ahead = kFallSeconds * std::max(fall.speed, 0.0) / height;
-    const double soft = kSoftGround + kMostSoft * ahead / (kMostSoft + ahead);
+    const double soft = kSoftGround + kMaxSoftness * ahead / (kMaxSoftness + ahead);
     leg.goal.y() += softPositive(under, height * soft * (1 - firm * leg.contact.strength));
   };
   const auto raiseAnkle = [&](double firm) { raise(foot.ankleGround - leg.goal.y(), state.ankleFall, firm); };
@@ -318,21 +319,21 @@ void LimbGoals::keepAboveGround(Leg& leg, const FootLock::Frame& foot, const Foo
   };
   if (leg.contact.anchor == FootAnchor::kToes) {
     raiseAnkle(kFirmBeside);
-    raiseToes(kFirmHeld);
+    raiseToes(kFirmPinned);
   } else {
     raiseToes(kFirmBeside);
-    raiseAnkle(kFirmHeld);
+    raiseAnkle(kFirmPinned);
   }
 }
 
 void LimbGoals::bendAsSource(Leg& leg, const BodyFrame& target) const {
-  const Vec3 hip = target.positions[leg.upper], way = leg.goal - hip;
-  const double own = way.norm(), most = kMaxStretch * leg.length;
+  const Vec3 hip = target.positions[leg.upper], displacement = leg.goal - hip;
+  const double own = displacement.norm(), most = kMaxStretch * leg.length;
   if (!leg.footDriven || !(own > 0)) return;
   const double free = smoothStep(leg.lift / kLifted), length = own + free * (leg.bentReach - own);
   const double soft = kSoftStanding + free * (kSoftLeg - kSoftStanding);
   const double reached = most - softPositive(most - length, soft * leg.length);
-  const Vec3 change = (reached / own - 1) * way;
+  const Vec3 change = (reached / own - 1) * displacement;
   const double down = -change.y(), room = heightOverGround(leg, target);
   // The nearer to the ground the slower.
   leg.goal += down > 0 ? Vec3(room / down * (1 - std::exp(-down / room)) * change) : change;
@@ -355,8 +356,8 @@ void LimbGoals::levelToes(const Leg& leg, BodyFrame& frame, Pose& target) const 
   const double down = std::max(std::atan2(-(turn * Vec3::UnitZ()).y(), (turn * Vec3::UnitY()).y()), 0.0);
   const double over = (frame.positions[*toes].y() - leg.toesGround) / setup_.targetHipHeight;
   const double lies = leg.toes ? leg.contact.strength : smoothStep(1 - over / kTipLies);
-  const double share = lies * std::clamp((kSoleUp - down) / (kSoleUp - kSteep), 0.0, 1.0);
-  const double up = share * down * down / (down + kSoftLevel);
+  const double fraction = lies * std::clamp((kSoleUp - down) / (kSoleUp - kSteep), 0.0, 1.0);
+  const double up = fraction * down * down / (down + kSoftLevel);
   if (up < 1e-9) return;
   const BodyKinematics& kinematics = setup_.targetKinematics;
   const Quat level = Eigen::AngleAxisd(-up, turn * Vec3::UnitX()) * frame.rotations[*toes];

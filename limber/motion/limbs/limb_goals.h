@@ -18,7 +18,7 @@ namespace limber {
 class LimbGoals {
  public:
   // Both must outlive this.
-  LimbGoals(const RetargetSetup& setup, const RootPlacer& root);
+  LimbGoals(const RetargetSetup& setup, const RootPositioner& root);
 
   // False where nothing needs correcting: nobody with legs, or the same body (RetargetSetup::sameBody).
   bool active() const { return active_; }
@@ -73,24 +73,24 @@ class LimbGoals {
   };
 
   Rise nextRise(const BodyFrame& target, double seconds) const;
-  void addPersonsLegs(const RootPlacer& root);
-  void addAnimalsLegs(const RootPlacer& root);
+  void addPersonsLegs(const RootPositioner& root);
+  void addAnimalsLegs(const RootPositioner& root);
   void addLeg(Leg leg);
   void readFoot(Leg& leg, FootState& state, const BodyFrame& source, const BodyFrame& target, double seconds) const;
   std::optional<Index> sourceBodyOf(const AnimalLeg& leg) const;
   Quat turnOfBody(const Leg& leg, const BodyFrame& source) const;
-  Vec3 turnedAsBody(const Vec3& way, const Leg& leg, const BodyFrame& source) const;
-  Vec3 footDrivenPlace(const Leg& leg, const BodyFrame& source, const BodyFrame& target) const;
+  Vec3 turnedAsBody(const Vec3& displacement, const Leg& leg, const BodyFrame& source) const;
+  Vec3 footDrivenPosition(const Leg& leg, const BodyFrame& source, const BodyFrame& target) const;
   void readFootDriven(Leg& leg, FootState& state, const BodyFrame& source, double seconds) const;
   static void followFall(double down, double seconds, Fall& fall);
   void carryFeet(const BodyFrame& target, double seconds);
   void setFoot(Leg& leg, const FootState& state, FootLock& lock, double seconds) const;
   void keepAboveGround(Leg& leg, const FootLock::Frame& foot, const FootState& state) const;
   double heightOverGround(const Leg& leg, const BodyFrame& target) const;
-  double loweredBy(double sourceGround, const Vec3& sourcePlace) const;
+  double loweredBy(double sourceGround, const Vec3& sourcePosition) const;
 
   const RetargetSetup& setup_;
-  const RootPlacer& root_;
+  const RootPositioner& root_;
   Pelvis pelvis_;
   BodyLift lift_;
   TailLift tail_;

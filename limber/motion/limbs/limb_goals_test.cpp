@@ -13,10 +13,10 @@ namespace {
 
 // How far above its place by the joint angles the left foot is held, of someone who comes down to the ground at
 // `speed`, metres a second, when it is there.
-double heldUp(double speed) {
+double liftedHeight(double speed) {
   const Skeleton person = practiceHumanoid(), odd = limber::testing::oddlyBuilt();
   const RetargetSetup setup(person, odd, matchSkeletons(person, odd), {});
-  const RootPlacer root(setup);
+  const RootPositioner root(setup);
   LimbGoals goals(setup, root);
   const Leg& leg = goals.legs().front();
   constexpr double kFrame = 1.0 / 60;
@@ -38,9 +38,9 @@ double heldUp(double speed) {
 }
 
 TEST(LimbGoals, AFootSlowsDownTheEarlierTheFasterItComes) {
-  EXPECT_LT(heldUp(0.1), 0.01);
-  EXPECT_GT(heldUp(2), heldUp(0.1) + 0.01);
-  EXPECT_LT(heldUp(20), 0.05) << "however fast";
+  EXPECT_LT(liftedHeight(0.1), 0.01);
+  EXPECT_GT(liftedHeight(2), liftedHeight(0.1) + 0.01);
+  EXPECT_LT(liftedHeight(20), 0.05) << "however fast";
 }
 
 // The same animal but for a joint that nothing follows: its paws go into the ground as the source's do.
@@ -69,7 +69,7 @@ double bentBy(double lift, double sunk) {
                                                        {"b0LeftThree", "b0RightThree", "b1LeftThree", "b1RightThree"}),
                  bigger = limber::testing::scaled(animal, 2);
   const RetargetSetup setup(animal, bigger, matchSkeletons(animal, bigger), {});
-  const RootPlacer root(setup);
+  const RootPositioner root(setup);
   LimbGoals goals(setup, root);
   Leg& leg = goals.legs().front();
   Pose from = restPose(animal);
@@ -97,7 +97,7 @@ TEST(LimbGoals, FeetGoTheWayOfASourceWithHocks) {
   const Skeleton hocked = limber::testing::withHocks(practiceHumanoid()), person = practiceHumanoid();
   const RetargetSetup setup(hocked, person, matchSkeletons(hocked, person), {});
   ASSERT_TRUE(setup.person);
-  const RootPlacer root(setup);
+  const RootPositioner root(setup);
   LimbGoals goals(setup, root);
   const Leg& leg = goals.legs().front();
   ASSERT_TRUE(leg.footDriven);
@@ -123,7 +123,7 @@ TEST(LimbGoals, FeetOfTwoLeggedAnimalsGoTheSourcesWay) {
       if (legs == 2) skeleton->joints.resize(skeleton->find("b1LeftOne").value());
     }
     const RetargetSetup setup(one, other, matchSkeletons(one, other), {});
-    const RootPlacer root(setup);
+    const RootPositioner root(setup);
     LimbGoals goals(setup, root);
     ASSERT_EQ(goals.legs().size(), legs);
     for (const Leg& leg : goals.legs()) EXPECT_EQ(leg.footDriven, legs == 2);
@@ -138,7 +138,7 @@ TEST(LimbGoals, WhoTurnsRoundStandsThereAsBefore) {
     if (joint.name.ends_with("Three")) joint.rest.translation.z() += 0.2;
   }
   const RetargetSetup setup(animal, other, limber::testing::matchByForm(animal, other), {});
-  const RootPlacer root(setup);
+  const RootPositioner root(setup);
   LimbGoals goals(setup, root);
   Pose from = restPose(animal), to = restPose(other);
   const Quat round = limber::testing::turn(Vec3::UnitY(), 120);
@@ -151,8 +151,8 @@ TEST(LimbGoals, WhoTurnsRoundStandsThereAsBefore) {
   ASSERT_EQ(goals.legs().size(), 4u);
   const std::vector<Vec3>& rest = setup.targetNeutral.restPositions;
   for (const Leg& leg : goals.legs()) {
-    const Vec3 stands = round * (rest[leg.end] - rest[leg.upper]), goal = leg.goal - target.positions[leg.upper];
-    EXPECT_LT((goal - stands).norm(), 0.01);
+    const Vec3 restDirection = round * (rest[leg.end] - rest[leg.upper]), goal = leg.goal - target.positions[leg.upper];
+    EXPECT_LT((goal - restDirection).norm(), 0.01);
   }
 }
 
@@ -160,10 +160,10 @@ TEST(LimbGoals, WhoTurnsRoundStandsThereAsBefore) {
 TEST(LimbGoals, AnAnimalsPelvisSinksSmoothly) {
   const Skeleton source = limber::testing::quadruped(0.5), target = limber::testing::quadruped(0.35);
   const RetargetSetup setup(source, target, matchSkeletons(source, target), {});
-  const RootPlacer root(setup);
+  const RootPositioner root(setup);
   LimbGoals goals(setup, root);
   constexpr double kFrame = 1.0 / 30;
-  double before = 0, beforeAtOnce = 0, most = 0, mostAtOnce = 0;
+  double before = 0, beforeAtOnce = 0, most = 0, maxAtOnce = 0;
   for (int f = 0; f < 20; ++f) {
     Pose from = restPose(source), to = restPose(target);
     for (Pose* pose : {&from, &to}) {
@@ -180,13 +180,13 @@ TEST(LimbGoals, AnAnimalsPelvisSinksSmoothly) {
     const double up = goals.pelvisMove(frame).up, atOnce = goals.pelvis().moveFor(goals.legs(), frame).up;
     if (f > 0) {
       most = std::max(most, std::abs(up - before));
-      mostAtOnce = std::max(mostAtOnce, std::abs(atOnce - beforeAtOnce));
+      maxAtOnce = std::max(maxAtOnce, std::abs(atOnce - beforeAtOnce));
     }
     before = up;
     beforeAtOnce = atOnce;
   }
-  EXPECT_GT(mostAtOnce, 0.003);
-  EXPECT_LT(most, 0.7 * mostAtOnce);
+  EXPECT_GT(maxAtOnce, 0.003);
+  EXPECT_LT(most, 0.7 * maxAtOnce);
 }
 
 }  // namespace

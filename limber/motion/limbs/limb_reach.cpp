@@ -18,7 +18,7 @@ constexpr double kKneesForward = 0.01;
 constexpr double kOverstretched = 0.12;
 // 0.01 to 0.05; joints that are less off the line to the end bend little; by jerk of a horse's clips on a dog (7.1
 // times the source's without it, 1.8 with it).
-constexpr double kLeastLever = 0.02;
+constexpr double kMinLever = 0.02;
 
 // Of the sides of a triangle, opposite its third side.
 double hingeAngle(double one, double other, double opposite) {
@@ -35,7 +35,7 @@ Quat hockTurn(const Limb& limb, const LimbShape& shape, const Vec3& there) {
   const double off = toStart.cross(line).norm(), kneeOff = shape.middle.cross(line).norm();
   const Vec3 normal = toStart.cross(toEnd);
   if (normal.norm() < 1e-9 * limb.length * limb.length) return Quat::Identity();
-  const double now = shape.end.norm(), longer = there.norm() - now, least = kLeastLever * limb.length;
+  const double now = shape.end.norm(), longer = there.norm() - now, least = kMinLever * limb.length;
   const double lever = off * off + kneeOff * kneeOff + least * least;
   const double angle = std::atan2(normal.norm(), toStart.dot(toEnd));
   double opens = off * longer / lever;
@@ -123,7 +123,7 @@ LimbShape LimbReach::shapeOf(const Limb& limb, const Vec3& kneeAhead, const Body
   return shape;
 }
 
-TwoBonePlaces LimbReach::placesFor(const Limb& limb, LimbShape shape, const Vec3& there) {
+TwoBonePositions LimbReach::positionsFor(const Limb& limb, LimbShape shape, const Vec3& there) {
   if (limb.hock) {
     const Quat turn = hockTurn(limb, shape, there);
     shape.end = shape.hock + turn * (shape.end - shape.hock);
@@ -132,7 +132,7 @@ TwoBonePlaces LimbReach::placesFor(const Limb& limb, LimbShape shape, const Vec3
   }
   TwoBone bones{Vec3::Zero(), shape.middle, shape.end, there, {}, {}};
   bones.pole = kneePole(shape, there);
-  return placeTwoBone(bones);
+  return twoBonePositions(bones);
 }
 
 void LimbReach::turnEnd(const Limb& limb, const Quat& orientation, BodyFrame& frame, Pose& target) const {

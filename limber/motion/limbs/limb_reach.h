@@ -21,7 +21,7 @@ struct LimbShape {
 class LimbReach {
  public:
   // Both must outlive this.
-  LimbReach(const RetargetSetup& setup, const RootPlacer& root) : setup_(setup), root_(root) {}
+  LimbReach(const RetargetSetup& setup, const RootPositioner& root) : setup_(setup), root_(root) {}
 
   // Two bones in closed form. `frame` are the globals of `target`; both are brought up to date. The end keeps how it is
   // turned, but for limb.turn. With `kneeAhead` (Leg) the middle joint bends to where it bends now, and to that side
@@ -35,13 +35,13 @@ class LimbReach {
 
   LimbShape shapeOf(const Limb& limb, const Vec3& kneeAhead, const BodyFrame& frame) const;
   // The ways from the upper joint to where reach() brings the middle and the end, for a goal that is `there` from it.
-  static TwoBonePlaces placesFor(const Limb& limb, LimbShape shape, const Vec3& there);
+  static TwoBonePositions positionsFor(const Limb& limb, LimbShape shape, const Vec3& there);
 
  private:
   Quat turnOf(Index joint, const BodyFrame& frame) const;  // against the neutral pose
 
   const RetargetSetup& setup_;
-  const RootPlacer& root_;
+  const RootPositioner& root_;
 };
 
 }  // namespace limber

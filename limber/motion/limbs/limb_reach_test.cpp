@@ -19,8 +19,8 @@ class LimbReachTest : public ::testing::Test {
     setup_.targetKinematics.globals(pose_, frame_);
     leg_ = goals_.legs().front();
   }
-  void reach(const Vec3& way) {
-    leg_.goal = frame_.positions[leg_.end] + way;
+  void reach(const Vec3& displacement) {
+    leg_.goal = frame_.positions[leg_.end] + displacement;
     reach_.reach(leg_, &leg_.kneeAhead, frame_, pose_);
   }
   Vec3 knee() const {
@@ -29,7 +29,7 @@ class LimbReachTest : public ::testing::Test {
 
   const Skeleton source_ = practiceHumanoid(), target_ = oddlyBuilt();
   const RetargetSetup setup_{source_, target_, matchSkeletons(source_, target_), {}};
-  const RootPlacer root_{setup_};
+  const RootPositioner root_{setup_};
   LimbGoals goals_{setup_, root_};
   const LimbReach reach_{setup_, root_};
   Pose pose_ = restPose(target_);
@@ -64,7 +64,7 @@ TEST(LimbReachOfAnimals, HocksBendAsWell) {
     if (joint.name.ends_with("Two")) joint.rest.translation.y() -= 0.2;
   }
   const RetargetSetup setup(source, animal, matchSkeletons(source, animal), {});
-  const RootPlacer root(setup);
+  const RootPositioner root(setup);
   LimbGoals goals(setup, root);
   ASSERT_EQ(goals.legs().size(), 4u);
   const LimbReach reach(setup, root);
@@ -102,7 +102,7 @@ TEST(LimbReachOfAnimals, LegsBendAsAtRestWhereTheSourcesBendElsewhere) {
   source.joints[0].rest.translation.y() = 1.2;
   {
     const RetargetSetup alike(source, animal, matchSkeletons(source, animal), {});
-    const RootPlacer root(alike);
+    const RootPositioner root(alike);
     EXPECT_FALSE(LimbGoals(alike, root).legs().front().ownBend);
   }
   for (Joint& joint : source.joints) {
@@ -111,7 +111,7 @@ TEST(LimbReachOfAnimals, LegsBendAsAtRestWhereTheSourcesBendElsewhere) {
       joint.rest.translation.y() *= 1.1;  // with equal bones it would be a twin that rests so
   }
   const RetargetSetup setup(source, animal, matchSkeletons(source, animal), {});
-  const RootPlacer root(setup);
+  const RootPositioner root(setup);
   LimbGoals goals(setup, root);
   const LimbReach reach(setup, root);
   for (const double overstretched : {0.3, 0.6, 1.2}) {

@@ -14,7 +14,7 @@ namespace {
 // Standing heights a second; 8 to 20; a joint that is faster is cut; set by hand.
 constexpr double kCut = 12;
 // Root mean square third difference of a path, dimensionless; 1e-6 to 1e-4; less counts as it: rounding only.
-constexpr double kLeastJerk = 2e-5;
+constexpr double kMinJerk = 2e-5;
 // Weight of squared third differences against squared changes; 1e8 to 1e11; more is lost in rounding (at 300 frames a
 // second); rounding only.
 constexpr double kSmoothest = 1e10;
@@ -136,7 +136,7 @@ double squaredJerk(const std::vector<Path>& paths, const std::vector<bool>& cuts
 }
 
 double jerkRatio(double source, double target, std::size_t frames) {
-  const double least = kLeastJerk * kLeastJerk * static_cast<double>(frames);
+  const double least = kMinJerk * kMinJerk * static_cast<double>(frames);
   return target > least || source > least ? std::sqrt(target / std::max(source, least)) : 1;
 }
 

@@ -94,7 +94,7 @@ TEST(Roughness, NobodyIsFasterThanACut) {
   const RetargetSetup setup(person, person, matchSkeletons(person, person), {});
   const double height = standingHeight(setup, MapSide::kSource);
   std::vector<Vec3> before = setup.sourceNeutral.positions, now = before;
-  for (Vec3& place : now) place.x() += 0.3 * height;
+  for (Vec3& position : now) position.x() += 0.3 * height;
   EXPECT_TRUE(isCut(setup, before, now, 1.0 / 60));
   EXPECT_FALSE(isCut(setup, before, now, 1.0 / 30));
 }

@@ -17,11 +17,11 @@ namespace limber {
 
 namespace {
 
-constexpr int kMostRepeats = 64;     // repeats; 8 to 1000; of a motion that loops: bounds memory; set by hand
+constexpr int kMaxRepeats = 64;      // repeats; 8 to 1000; of a motion that loops: bounds memory; set by hand
 constexpr double kSamePhase = 1e-6;  // footfalls; 1e-9 to 1e-3; rounding only
 // Ratio; 2 to 4; strides a second grow fourfold from a stroll (0.55) to a sprint (2.2): beyond that no two are gaits of
 // one body.
-constexpr double kMostRateRatio = 4;
+constexpr double kMaxRateRatio = 4;
 
 // What the blend plays: both motions, repeated where they loop, on one scale.
 struct Together {
@@ -47,7 +47,7 @@ long cycleOf(const GaitPhase& phase, double duration) {
 }
 
 int repeatsFor(double steps, long cycle) {
-  return static_cast<int>(std::min<double>(kMostRepeats, std::ceil(steps / static_cast<double>(cycle)) + 2));
+  return static_cast<int>(std::min<double>(kMaxRepeats, std::ceil(steps / static_cast<double>(cycle)) + 2));
 }
 
 Together overCommonSpan(MixMotion a, MixMotion b, StridePhases phases) {
@@ -61,7 +61,7 @@ std::optional<Together> overLoops(const MixMotion& a, const MixMotion& b, double
   const std::optional<StridePhases> three = stepsOf(a.repeated(3), b.repeated(3));
   if (!three) return std::nullopt;
   const long ofA = cycleOf(three->a, a.duration()), ofB = cycleOf(three->b, b.duration()), both = std::lcm(ofA, ofB);
-  if (both / std::min(ofA, ofB) > kMostRepeats / 2) return std::nullopt;
+  if (both / std::min(ofA, ofB) > kMaxRepeats / 2) return std::nullopt;
   MixMotion manyA = a.repeated(static_cast<int>(both / ofA) + 3), manyB = b.repeated(static_cast<int>(both / ofB) + 3);
   std::optional<StridePhases> phases = stepsOf(manyA, manyB);
   if (!phases) return std::nullopt;
@@ -106,7 +106,7 @@ double rateRatio(const Together& together) {
 
 void warnOfRates(const Together& together, double weight, Warnings& warnings) {
   const double ratio = rateRatio(together);
-  if (!(ratio > kMostRateRatio) || weight == 0 || weight == 1) return;
+  if (!(ratio > kMaxRateRatio) || weight == 0 || weight == 1) return;
   warnings.add("unlike-rates",
                fmt::format("steps of blended motions, or what they last where one has none, differ by a factor of "
                            "{:.3g}: the slower motion is played too fast",
@@ -117,13 +117,13 @@ void warnOfRates(const Together& together, double weight, Warnings& warnings) {
 // A pose has no speed that could be blended.
 void holdPoses(const MixBody& body, const Clip& a, const Clip& b, MixMotion& first, MixMotion& second) {
   const bool aStill = isStill(a), bStill = isStill(b);
-  const auto heldAs = [&](const Clip& pose, const MixMotion& other) {
-    return MixMotion(body, heldPose(body.original(), pose, other.duration(), other.frameSeconds()));
+  const auto holdLike = [&](const Clip& pose, const MixMotion& other) {
+    return MixMotion(body, holdPose(body.original(), pose, other.duration(), other.frameSeconds()));
   };
   if (aStill && (!bStill || first.duration() < second.duration())) {
-    first = heldAs(a, second);
+    first = holdLike(a, second);
   } else if (bStill) {
-    second = heldAs(b, first);
+    second = holdLike(b, first);
   }
 }
 
@@ -133,7 +133,7 @@ std::vector<MixMoment> playedMoments(const Together& together, double weight, do
   std::vector<MixMoment> moments;
   while (clock.phase() <= together.to + kSamePhase) {
     moments.push_back({clock.a(), clock.b(), weight});
-    if (moments.size() > kMostClipFrames) {
+    if (moments.size() > kMaxClipFrames) {
       throw Error(ErrorCode::kLimit, "the blend has too many frames", together.a.name(), "choose a lower frame rate");
     }
     clock.advance(frameSeconds * speed, weight, weight);

@@ -23,8 +23,8 @@ class BlendMotions : public ::testing::Test {
   // Metres a second from the first to the last frame.
   double speedOf(const Clip& clip) const {
     const auto frames = jointPaths(skeleton, clip);
-    const Vec3 way = frames.back()[0] - frames.front()[0];
-    return std::hypot(way.x(), way.z()) / clip.duration();
+    const Vec3 displacement = frames.back()[0] - frames.front()[0];
+    return std::hypot(displacement.x(), displacement.z()) / clip.duration();
   }
   // The furthest that a joint of one is from that of the other.
   static double furthest(const std::vector<std::vector<Vec3>>& a, const std::vector<std::vector<Vec3>>& b) {
@@ -94,9 +94,9 @@ TEST_F(BlendMotions, HeadsBetweenBoth) {
   const Quat turn(Eigen::AngleAxisd(1.0, Vec3::UnitY()));
   const ClipWithContacts aside{turnClip(walk.clip, skeleton, turn), {}};
   const auto frames = jointPaths(skeleton, blended(walk, aside, 0.5).clip);
-  const Vec3 way = frames.back()[0] - frames.front()[0];
-  EXPECT_NEAR(std::atan2(way.x(), way.z()), 0.5, 0.02);
-  EXPECT_NEAR(std::hypot(way.x(), way.z()), 3.6, 0.01);
+  const Vec3 displacement = frames.back()[0] - frames.front()[0];
+  EXPECT_NEAR(std::atan2(displacement.x(), displacement.z()), 0.5, 0.02);
+  EXPECT_NEAR(std::hypot(displacement.x(), displacement.z()), 3.6, 0.01);
 }
 
 TEST_F(BlendMotions, WhatHasNoFootfallsIsBlendedOverItsWhole) {
@@ -122,7 +122,7 @@ TEST_F(BlendMotions, WhatHasNoFootfallsIsBlendedOverItsWhole) {
 TEST_F(BlendMotions, APoseIsHeldAsLongAsTheOtherLasts) {
   for (const double seconds : {0.0, 0.1, 5.0}) {
     SCOPED_TRACE(seconds);
-    const ClipWithContacts pose = heldPose(skeleton, sampleClip("idle").clip, seconds, 1 / 30.0);
+    const ClipWithContacts pose = holdPose(skeleton, sampleClip("idle").clip, seconds, 1 / 30.0);
     Warnings warnings;
     const Clip one = blendMotions(skeleton, walk, pose, {0.5, std::nullopt}, &warnings).clip;
     EXPECT_NEAR(one.duration(), walk.clip.duration(), 1.0 / 60);
@@ -131,7 +131,7 @@ TEST_F(BlendMotions, APoseIsHeldAsLongAsTheOtherLasts) {
     EXPECT_NEAR(blended(pose, walk, 0.5).clip.duration(), walk.clip.duration(), 1.0 / 60);
     EXPECT_TRUE(warnings.empty());
   }
-  const ClipWithContacts pose = heldPose(skeleton, walk.clip, 0, 1 / 30.0);
+  const ClipWithContacts pose = holdPose(skeleton, walk.clip, 0, 1 / 30.0);
   Warnings warnings;
   EXPECT_EQ(blendMotions(skeleton, pose, pose, {0.5, std::nullopt}, &warnings).clip.duration(), 0);
   EXPECT_TRUE(warnings.empty());

@@ -47,13 +47,13 @@ MixedRange rangeOf(const MixedFrames& mixed, std::size_t begin, std::size_t end,
 }
 
 // One that is still lasts long enough for the transitions at its sides, at the rate of the one beside it.
-ClipWithContacts heldForTransitions(const Skeleton& skeleton, std::span<const ClipWithContacts> motions, std::size_t i,
-                                    const CrossfadeOptions& options) {
+ClipWithContacts extendForTransitions(const Skeleton& skeleton, std::span<const ClipWithContacts> motions,
+                                      std::size_t i, const CrossfadeOptions& options) {
   const Clip& clip = motions[i].clip;
   const double needed = (i == 0 || i + 1 == motions.size() ? 1 : 2) * options.seconds;
   if (motions.size() == 1 || clip.duration() >= needed || !isStill(clip)) return motions[i];
   const double rate = options.frameRate.value_or(denseFrameRateOf(motions[i == 0 ? 1 : i - 1].clip));
-  return heldPose(skeleton, clip, needed, 1 / rate);
+  return holdPose(skeleton, clip, needed, 1 / rate);
 }
 
 void warnOfLength(double asked, double taken, const Clip& a, const Clip& b, Warnings& warnings) {
@@ -75,12 +75,12 @@ JoinedMotions joinMotions(const Skeleton& skeleton, std::span<const ClipWithCont
   if (motions.empty()) throw Error(ErrorCode::kBadArgument, "no motions to join");
   const MixBody body(skeleton);
   JoinedMotions joined;
-  joined.motion = heldForTransitions(skeleton, motions, 0, options);
+  joined.motion = extendForTransitions(skeleton, motions, 0, options);
   joined.spans = {{0, joined.motion.clip.duration()}};
   double most = options.seconds;  // that a transition takes: of a motion between two others half
   for (std::size_t i = 1; i < motions.size(); ++i) {
     // What is joined already begins as it should: the spans are those of its frames.
-    const MixMotion a(body, joined.motion, i > 1), b(body, heldForTransitions(skeleton, motions, i, options));
+    const MixMotion a(body, joined.motion, i > 1), b(body, extendForTransitions(skeleton, motions, i, options));
     const double frameSeconds =
         options.frameRate ? 1 / *options.frameRate : std::min(a.frameSeconds(), b.frameSeconds());
     const double half = i + 1 < motions.size() ? std::max(frameSeconds, b.duration() / 2) : options.seconds;

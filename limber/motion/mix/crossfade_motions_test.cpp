@@ -19,9 +19,9 @@ using limber::testing::sampleClip;
 class CrossfadeMotions : public ::testing::Test {
  protected:
   static Vec3 headingAt(const std::vector<std::vector<Vec3>>& frames, std::size_t from, std::size_t to) {
-    Vec3 way = frames[to][0] - frames[from][0];
-    way.y() = 0;
-    return way.normalized();
+    Vec3 displacement = frames[to][0] - frames[from][0];
+    displacement.y() = 0;
+    return displacement.normalized();
   }
 
   const Skeleton skeleton = limber::testing::sampleSkeleton();
@@ -177,7 +177,7 @@ TEST_F(CrossfadeMotions, OneFirstPoseIsLeftOutHoweverManyAreJoined) {
 }
 
 TEST_F(CrossfadeMotions, APoseIsHeldForItsTransitions) {
-  const ClipWithContacts pose = heldPose(skeleton, sampleClip("idle").clip, 0, 1 / 30.0);
+  const ClipWithContacts pose = holdPose(skeleton, sampleClip("idle").clip, 0, 1 / 30.0);
   const std::vector<std::vector<ClipWithContacts>> rows = {{pose, walk}, {walk, pose}, {walk, pose, run}, {pose, pose}};
   for (const std::vector<ClipWithContacts>& row : rows) {
     Warnings warnings;

@@ -36,26 +36,27 @@ double turnAboutVertical(const Quat& turn) {
 
 GroundFrame groundFrameOf(const MixBody& body, const BodyFrame& frame) {
   const NeutralPose& neutral = body.setup().targetNeutral;
-  const Vec3 place = pelvisOf(body.setup().map, MapSide::kTarget, frame.positions);
+  const Vec3 position = pelvisOf(body.setup().map, MapSide::kTarget, frame.positions);
   const Quat turn = frame.rotations[body.pelvis()] * neutral.rotations[body.pelvis()].conjugate();
-  return {place.x(), place.z(), turnAboutVertical(turn)};
+  return {position.x(), position.z(), turnAboutVertical(turn)};
 }
 
 GroundStep stepBetween(const GroundFrame& from, const GroundFrame& to) {
-  const Vec3 way = from.turn().conjugate() * (to.place() - from.place());
+  const Vec3 displacement = from.turn().conjugate() * (to.position() - from.position());
   const double turn = wrapped(to.heading - from.heading), half = turn / 2;
-  if (std::abs(turn) < kStraight) return {way.x(), way.z(), turn};
+  if (std::abs(turn) < kStraight) return {displacement.x(), displacement.z(), turn};
   // The chord of the arc, back to its tangent.
-  const Vec3 along = half / std::sin(half) * (Eigen::AngleAxisd(-half, Vec3::UnitY()) * way);
+  const Vec3 along = half / std::sin(half) * (Eigen::AngleAxisd(-half, Vec3::UnitY()) * displacement);
   return {along.x(), along.z(), turn};
 }
 
 GroundFrame moved(const GroundFrame& from, const GroundStep& step) {
   const double half = step.turn / 2;
-  Vec3 way(step.x, 0, step.z);
-  if (std::abs(step.turn) >= kStraight) way = std::sin(half) / half * (Eigen::AngleAxisd(half, Vec3::UnitY()) * way);
-  const Vec3 place = from.place() + from.turn() * way;
-  return {place.x(), place.z(), from.heading + step.turn};
+  Vec3 displacement(step.x, 0, step.z);
+  if (std::abs(step.turn) >= kStraight)
+    displacement = std::sin(half) / half * (Eigen::AngleAxisd(half, Vec3::UnitY()) * displacement);
+  const Vec3 position = from.position() + from.turn() * displacement;
+  return {position.x(), position.z(), from.heading + step.turn};
 }
 
 GroundStep mixOf(const GroundStep& a, const GroundStep& b, double weight) {
@@ -69,11 +70,11 @@ GroundFrame between(const GroundFrame& a, const GroundFrame& b, double weight) {
 
 void enterFrame(const MixBody& body, const GroundFrame& frame, Pose& pose) {
   const Quat back = frame.turn().conjugate();
-  moveRoots(body, back, -(back * frame.place()), pose);
+  moveRoots(body, back, -(back * frame.position()), pose);
 }
 
 void leaveFrame(const MixBody& body, const GroundFrame& frame, Pose& pose) {
-  moveRoots(body, frame.turn(), frame.place(), pose);
+  moveRoots(body, frame.turn(), frame.position(), pose);
 }
 
 }  // namespace limber

@@ -11,7 +11,7 @@ struct GroundFrame {
   double heading = 0;   // radians about +Y, against the neutral pose
 
   Quat turn() const { return Quat(Eigen::AngleAxisd(heading, Vec3::UnitY())); }
-  Vec3 place() const { return {x, 0, z}; }
+  Vec3 position() const { return {x, 0, z}; }
 };
 
 // The twist of a turn about +Y, radians within half a turn.

@@ -41,16 +41,16 @@ TEST(GroundFrame, APoseIsTheSameInItsFrame) {
   pose.locals[person.find("spine").value()].rotation = Quat(Eigen::AngleAxisd(0.5, Vec3::UnitX()));
   BodyFrame frame;
   body.globals(pose, frame);
-  const GroundFrame before = groundFrameOf(body, frame), place{3, -1, 2.2};
+  const GroundFrame before = groundFrameOf(body, frame), groundFrame{3, -1, 2.2};
   Pose elsewhere = pose;
   enterFrame(body, before, elsewhere);
   const Pose inFrame = elsewhere;
-  leaveFrame(body, place, elsewhere);
+  leaveFrame(body, groundFrame, elsewhere);
   body.globals(elsewhere, frame);
   const GroundFrame there = groundFrameOf(body, frame);
-  EXPECT_NEAR(there.x, place.x, 1e-9);
-  EXPECT_NEAR(there.z, place.z, 1e-9);
-  EXPECT_NEAR(there.heading, place.heading, 1e-9);
+  EXPECT_NEAR(there.x, groundFrame.x, 1e-9);
+  EXPECT_NEAR(there.z, groundFrame.z, 1e-9);
+  EXPECT_NEAR(there.heading, groundFrame.heading, 1e-9);
   enterFrame(body, there, elsewhere);
   for (std::size_t j = 0; j < pose.locals.size(); ++j) {
     EXPECT_LT((elsewhere.locals[j].translation - inFrame.locals[j].translation).norm(), 1e-9);

@@ -37,15 +37,15 @@ bool isStill(const Clip& clip) {
   return areStill(clip.translations) && areStill(clip.rotations) && areStill(clip.scales);
 }
 
-ClipWithContacts heldPose(const Skeleton& skeleton, const Clip& clip, double seconds, double frameSeconds) {
+ClipWithContacts holdPose(const Skeleton& skeleton, const Clip& clip, double seconds, double frameSeconds) {
   const double frames = std::ceil(seconds / frameSeconds - kWholeFrame) + 1;
-  if (!(frames <= kMostClipFrames)) {
+  if (!(frames <= kMaxClipFrames)) {
     throw Error(ErrorCode::kLimit, "a pose would be held for too many frames", clip.name, "choose a shorter time");
   }
   Pose pose = restPose(skeleton);
   sampleClip(clip, 0, pose);
-  const PoseSequence held{std::vector<Pose>(static_cast<std::size_t>(frames), pose), frameSeconds};
-  return {clipOf(skeleton, held, clip.name), {}};
+  const PoseSequence result{std::vector<Pose>(static_cast<std::size_t>(frames), pose), frameSeconds};
+  return {clipOf(skeleton, result, clip.name), {}};
 }
 
 }  // namespace limber

@@ -10,6 +10,6 @@ bool isStill(const Clip& clip);
 
 // Its first pose in frames `frameSeconds` apart, for so many seconds or up to a frame more. When feet are planted is
 // left to be read off it. Throws Error kLimit beyond kMostClipFrames.
-ClipWithContacts heldPose(const Skeleton& skeleton, const Clip& clip, double seconds, double frameSeconds);
+ClipWithContacts holdPose(const Skeleton& skeleton, const Clip& clip, double seconds, double frameSeconds);
 
 }  // namespace limber

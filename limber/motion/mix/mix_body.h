@@ -20,7 +20,7 @@ class MixBody {
   const PlainSkeleton& plain() const { return plain_; }
   // From the plain skeleton to itself, solved for limbs as between two bodies.
   const RetargetSetup& setup() const { return setup_; }
-  const RootPlacer& root() const { return root_; }
+  const RootPositioner& root() const { return root_; }
   const TrunkTilt& trunk() const { return goals_.pelvis().trunk(); }
   // Each bends to where its joint angles bend it.
   const std::vector<Leg>& legs() const { return legs_; }
@@ -33,7 +33,7 @@ class MixBody {
   const Skeleton& original_;
   PlainSkeleton plain_;
   RetargetSetup setup_;
-  RootPlacer root_;
+  RootPositioner root_;
   LimbGoals goals_;
   std::vector<Leg> legs_;
   Index pelvis_;

@@ -17,7 +17,7 @@ namespace {
 constexpr double kLoopError = 0.03;
 
 // Joints in the body's own frame.
-std::vector<Vec3> placesInBody(const MixBody& body, const MixMotion& motion, double seconds) {
+std::vector<Vec3> positionsInBody(const MixBody& body, const MixMotion& motion, double seconds) {
   Pose pose;
   motion.sample(seconds, pose);
   enterFrame(body, motion.groundAt(seconds), pose);
@@ -63,9 +63,9 @@ std::vector<double> swaysOf(const std::vector<double>& headings, double stride) 
 }
 
 double swayAt(const std::vector<double>& sways, double frame) {
-  const CurveShares curve = curveShares(std::clamp(frame, 0.0, static_cast<double>(sways.size() - 1)), sways.size());
+  const CurveWeights curve = curveWeights(std::clamp(frame, 0.0, static_cast<double>(sways.size() - 1)), sways.size());
   double sway = 0;
-  for (std::size_t i = 0; i < 4; ++i) sway += curve.shares[i] * sways[curve.frames[i]];
+  for (std::size_t i = 0; i < 4; ++i) sway += curve.weights[i] * sways[curve.frames[i]];
   return sway;
 }
 
@@ -141,7 +141,8 @@ void MixMotion::readSteps() {
 bool MixMotion::loops() const {
   if (frames_.poses.size() < 4) return false;
   const double limit = kLoopError * body_->setup().targetHipHeight;
-  return squaredDistance(placesInBody(*body_, *this, 0), placesInBody(*body_, *this, duration())) <= limit * limit;
+  return squaredDistance(positionsInBody(*body_, *this, 0), positionsInBody(*body_, *this, duration())) <=
+         limit * limit;
 }
 
 MixMotion MixMotion::repeated(int times) const {

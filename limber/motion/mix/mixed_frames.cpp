@@ -15,8 +15,9 @@ namespace {
 // Fraction of the longer of two spans; 0.2 to 0.55; by which they overlap where they are one contact: a walk's and a
 // run's do by 0.56 (measured).
 constexpr double kTogether = 0.4;
-constexpr double kCounts = 0.2;    // weight; 0 to 0.5; from there on a motion says what is planted; set by hand
-constexpr double kOnePlace = 0.2;  // hip heights; 0.1 to 0.5; between a foot's positions, planted in both; set by hand
+constexpr double kCounts = 0.2;  // weight; 0 to 0.5; from there on a motion says what is planted; set by hand
+constexpr double kSamePosition =
+    0.2;  // hip heights; 0.1 to 0.5; between a foot's positions, planted in both; set by hand
 constexpr double kSameDirection = 1 - 1e-13;  // cosine of half an angle; 1 - 1e-10 to below 1; rounding only
 
 // One of the motions in one frame.
@@ -117,7 +118,7 @@ class Mixer {
         if (!first) {
           addSteps(aBefore, a, leg, 1 - weight, ground.turn(), foot);
           addSteps(bBefore, b, leg, weight, ground.turn(), foot);
-          share(aBefore, a, bBefore, b, leg, weight, foot);
+          addCommon(aBefore, a, bBefore, b, leg, weight, foot);
         }
         result.feet.push_back(foot);
       }
@@ -150,7 +151,7 @@ class Mixer {
   }
 
   static Vec3 inFrame(const Vec3& point, const PartFrame& part) {
-    return part.ground.turn().conjugate() * (point - part.ground.place());
+    return part.ground.turn().conjugate() * (point - part.ground.position());
   }
 
   // The pose is blended by its joint angles.
@@ -158,7 +159,7 @@ class Mixer {
     body_.globals(pose, frame_);
     const auto blended = [&](const Vec3& ofA, const Vec3& ofB) {
       const Vec3 inA = inFrame(ofA, a), inB = inFrame(ofB, b);
-      return Vec3(ground.place() + ground.turn() * (inA + weight * (inB - inA)));
+      return Vec3(ground.position() + ground.turn() * (inA + weight * (inB - inA)));
     };
     for (std::size_t i = 0; i < legs_.size(); ++i) {
       Leg& leg = legs_[i];
@@ -174,8 +175,8 @@ class Mixer {
   }
 
   // Turns a joint so that the next one lies in the direction of a place.
-  void pointAt(Index joint, Index next, const Vec3& place, Pose& pose) {
-    const Vec3 now = frame_.positions[next] - frame_.positions[joint], wanted = place - frame_.positions[joint];
+  void pointAt(Index joint, Index next, const Vec3& position, Pose& pose) {
+    const Vec3 now = frame_.positions[next] - frame_.positions[joint], wanted = position - frame_.positions[joint];
     const Quat turn = shortestRotation(now, wanted);
     if (!(now.norm() > 0 && wanted.norm() > 0) || std::abs(turn.w()) > kSameDirection) return;
     const BodyKinematics& kinematics = body_.setup().targetKinematics;
@@ -205,7 +206,7 @@ class Mixer {
     if ((aCounts && !a->feet[leg].planted) || (bCounts && !b->feet[leg].planted)) return false;
     if (!aCounts || !bCounts) return true;
     const Vec3 apart = inFrame(a->feet[leg].ankle, *a) - inFrame(b->feet[leg].ankle, *b);
-    return apart.norm() < kOnePlace * body_.setup().targetHipHeight;
+    return apart.norm() < kSamePosition * body_.setup().targetHipHeight;
   }
 
   static double countOf(const MaybePart& before, const MaybePart& now, std::size_t leg, double weight) {
@@ -224,8 +225,8 @@ class Mixer {
     foot.turn += count * turnAboutVertical(to.turn * from.turn.conjugate());
   }
 
-  static void share(const MaybePart& aBefore, const MaybePart& a, const MaybePart& bBefore, const MaybePart& b,
-                    std::size_t leg, double weight, MixedFoot& foot) {
+  static void addCommon(const MaybePart& aBefore, const MaybePart& a, const MaybePart& bBefore, const MaybePart& b,
+                        std::size_t leg, double weight, MixedFoot& foot) {
     const double sum = countOf(aBefore, a, leg, 1 - weight) + countOf(bBefore, b, leg, weight);
     if (sum == 0) return;
     foot.ankleStep /= sum;

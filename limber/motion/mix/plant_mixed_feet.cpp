@@ -35,10 +35,10 @@ class FootPlanter {
     planting.cuts.assign(frames, false);
     planting.frameAt = [&](std::size_t f) -> const BodyFrame& { return frames_[f - range_.begin]; };
     planting.askedOf = [&](std::size_t f, std::size_t leg, const BodyFrame& frame) { return askedOf(f, leg, frame); };
-    planting.change = [&](MovedLegs& moved, const ChangeLayout& layout, const Changes& changes, std::size_t place,
+    planting.change = [&](MovedLegs& moved, const ChangeLayout& layout, const Changes& changes, std::size_t index,
                           std::size_t f) {
-      if (!isSeen(layout, changes, place) && !isTwisted(f)) return;
-      moved.pose(layout, changes, place, mixed_.frames.poses[f], twists_[f - range_.begin]);
+      if (!isSeen(layout, changes, index) && !isTwisted(f)) return;
+      moved.pose(layout, changes, index, mixed_.frames.poses[f], twists_[f - range_.begin]);
     };
     plantFeet(MovedLegs(body_.setup(), body_.root(), body_.trunk(), body_.legs()), planting);
   }
@@ -99,8 +99,8 @@ class FootPlanter {
     if (leg.toes) ground = std::max(ground, leg.toesGround - now.roll.y());
     FootFrame asked;
     asked.lowest = unit * std::min(ground - now.ankle.y(), 0.0);
-    asked.way = unit * (now.ankle - frame.positions[leg.upper]);
-    asked.most = std::max(unit * planting::kStretched * leg.length, asked.way.norm());
+    asked.displacement = unit * (now.ankle - frame.positions[leg.upper]);
+    asked.most = std::max(unit * planting::kStretched * leg.length, asked.displacement.norm());
     if (body_.trunk().isFore(leg.upper)) asked.lift = TrunkTilt::liftOf(body_.trunk().trunkOf(frame));
     if (!staysPlanted(f, i)) return asked;
     const MixedFoot& own = mixedFoot(f, i);

@@ -31,7 +31,7 @@ Spans steadySpans(const Spans& spans) {
 }  // namespace
 
 std::vector<FootSpans> plantedFeet(const RetargetSetup& setup, const PoseSequence& source) {
-  const RootPlacer root(setup);
+  const RootPositioner root(setup);
   LimbGoals goals(setup, root);
   const std::vector<WatchedFoot> watched = goals.watchedFeet();
   const ContactTrack track(setup, watched, source);

@@ -17,8 +17,8 @@ std::array<double, 4> countsAt(double u, bool first, bool last) {
   const double from = u * (1 - u) * (1 - u), to = -u * u * (1 - u);  // of the speeds at both ends
   const double there = u * u * (3 - 2 * u);
   std::array<double, 4> counts = {0, 1 - there, there, 0};
-  const auto add = [&](double share, std::array<double, 4> speed) {
-    for (std::size_t i = 0; i < 4; ++i) counts[i] += share * speed[i];
+  const auto add = [&](double fraction, std::array<double, 4> speed) {
+    for (std::size_t i = 0; i < 4; ++i) counts[i] += fraction * speed[i];
   };
   const bool alone = first && last;
   add(from, alone   ? std::array{0.0, -1.0, 1.0, 0.0}
@@ -32,7 +32,7 @@ std::array<double, 4> countsAt(double u, bool first, bool last) {
 
 }  // namespace
 
-CurveShares curveShares(double at, std::size_t frameCount) {
+CurveWeights curveWeights(double at, std::size_t frameCount) {
   if (frameCount == 1) return {{0, 0, 0, 0}, {0, 1, 0, 0}};
   const std::size_t k = std::min(static_cast<std::size_t>(at), frameCount - 2);
   const bool isFirst = k == 0, isLast = k + 2 == frameCount;
@@ -49,7 +49,7 @@ void PoseCurve::sample(double seconds, Pose& pose) const {
     return;
   }
   const auto k = static_cast<std::size_t>(at);
-  const CurveShares curve = curveShares(at, poses.size());
+  const CurveWeights curve = curveWeights(at, poses.size());
   pose = poses[k];
   for (std::size_t j = 0; j < pose.locals.size(); ++j) {
     Transform& local = pose.locals[j];
@@ -60,9 +60,9 @@ void PoseCurve::sample(double seconds, Pose& pose) const {
     for (std::size_t i = 0; i < 4; ++i) {
       const Transform& other = poses[curve.frames[i]].locals[j];
       const double alike = other.rotation.dot(before);
-      flips = flips || (curve.shares[i] != 0 && std::abs(alike) < kFlip);
-      local.translation += curve.shares[i] * other.translation;
-      turned += (alike < 0 ? -curve.shares[i] : curve.shares[i]) * other.rotation.coeffs();
+      flips = flips || (curve.weights[i] != 0 && std::abs(alike) < kFlip);
+      local.translation += curve.weights[i] * other.translation;
+      turned += (alike < 0 ? -curve.weights[i] : curve.weights[i]) * other.rotation.coeffs();
     }
     local.rotation = flips ? poses[static_cast<std::size_t>(near)].locals[j].rotation : Quat(turned.normalized());
     local.scale =

@@ -14,11 +14,11 @@ inline constexpr double kWholeFrame = 1e-6;
 
 // How much which frames count at a moment between frames: with the speeds of Catmull-Rom (1974), at an end that of the
 // parabola through the last three. `at` in frames, from 0 to the last.
-struct CurveShares {
+struct CurveWeights {
   std::array<std::size_t, 4> frames;
-  std::array<double, 4> shares;
+  std::array<double, 4> weights;
 };
-CurveShares curveShares(double at, std::size_t frameCount);
+CurveWeights curveWeights(double at, std::size_t frameCount);
 
 // Through all frames, as curveShares tells: translations by their components, rotations by those of
 // their quaternions, made unit again. Scales go straight. At a frame it is that frame, bit for bit. A joint that turns

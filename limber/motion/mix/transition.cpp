@@ -19,14 +19,14 @@ constexpr double kReach = 1;       // seconds; 0.5 to 3; into either motion, abo
 constexpr double kForeseen = 0.1;  // seconds; 0.03 to 0.3; for which joints go on at their speeds; set by hand
 
 // 0 to 1.
-double leastJerk(double u) {
+double minJerk(double u) {
   return u * u * u * (10 + u * (6 * u - 15));
 }
 
 // One motion's frames near the transition.
 struct Seen {
-  std::vector<Vec3> places, ahead;  // of the joints, in the body's own frame
-  std::vector<bool> planted;        // of the body's legs
+  std::vector<Vec3> positions, ahead;  // of the joints, in the body's own frame
+  std::vector<bool> planted;           // of the body's legs
 };
 
 class SeenFrames {
@@ -42,10 +42,10 @@ class SeenFrames {
       const double other = isLast ? now - frameSeconds : now + frameSeconds;
       const GroundFrame ground = motion.groundAt(now);
       Seen& seen = frames_.emplace_back();
-      seen.places = seen.ahead = placesAt(body, motion, now, ground);
-      const std::vector<Vec3> moved = placesAt(body, motion, other, ground);
-      const double share = (isLast ? -kForeseen : kForeseen) / frameSeconds;
-      for (std::size_t j = 0; j < moved.size(); ++j) seen.ahead[j] += share * (moved[j] - seen.places[j]);
+      seen.positions = seen.ahead = positionsAt(body, motion, now, ground);
+      const std::vector<Vec3> moved = positionsAt(body, motion, other, ground);
+      const double fraction = (isLast ? -kForeseen : kForeseen) / frameSeconds;
+      for (std::size_t j = 0; j < moved.size(); ++j) seen.ahead[j] += fraction * (moved[j] - seen.positions[j]);
       for (const std::vector<TimeSpan>& of : spans) {
         seen.planted.push_back(std::any_of(of.begin(), of.end(), [&](const TimeSpan& span) {
           return span.from <= now + kSameTime && now <= span.to + kSameTime;
@@ -61,8 +61,8 @@ class SeenFrames {
   }
 
  private:
-  static std::vector<Vec3> placesAt(const MixBody& body, const MixMotion& motion, double seconds,
-                                    const GroundFrame& ground) {
+  static std::vector<Vec3> positionsAt(const MixBody& body, const MixMotion& motion, double seconds,
+                                       const GroundFrame& ground) {
     Pose pose;
     motion.sample(seconds, pose);
     enterFrame(body, ground, pose);
@@ -77,13 +77,13 @@ class SeenFrames {
 
 double distanceOf(const Seen& a, const Seen& b) {
   double sum = 0;
-  for (std::size_t j = 0; j < a.places.size(); ++j) {
-    sum += (a.places[j] - b.places[j]).squaredNorm() + (a.ahead[j] - b.ahead[j]).squaredNorm();
+  for (std::size_t j = 0; j < a.positions.size(); ++j) {
+    sum += (a.positions[j] - b.positions[j]).squaredNorm() + (a.ahead[j] - b.ahead[j]).squaredNorm();
   }
   return sum;
 }
 
-bool shareFoot(const Seen& a, const Seen& b) {
+bool haveCommonFoot(const Seen& a, const Seen& b) {
   for (std::size_t leg = 0; leg < a.planted.size(); ++leg) {
     if (a.planted[leg] && b.planted[leg]) return true;
   }
@@ -135,9 +135,7 @@ class TransitionSearch {
 
   // The transition from that frame of a, at both motions' speed times `speed`.
   std::vector<MixMoment> played(const StridePhases& phases, double frame, double speed) const {
-    const auto weightAt = [&](std::size_t f) {
-      return leastJerk(static_cast<double>(f) / static_cast<double>(frames_));
-    };
+    const auto weightAt = [&](std::size_t f) { return minJerk(static_cast<double>(f) / static_cast<double>(frames_)); };
     JointClock clock(phases, frame * frameSeconds_);
     std::vector<MixMoment> moments;
     for (std::size_t f = 0; f <= frames_; ++f) {
@@ -163,10 +161,10 @@ class TransitionSearch {
       distance += distanceOf(*a, *b);
     }
     const auto [a, b] = at(frames_ / 2);
-    const bool shares = shareFoot(*a, *b);
-    if (best_ && (shares != shares_ ? shares_ : distance >= distance_)) return;
+    const bool commonFoot = haveCommonFoot(*a, *b);
+    if (best_ && (commonFoot != bestHasFoot_ ? bestHasFoot_ : distance >= distance_)) return;
     best_ = Transition{phases, std::move(moments)};
-    shares_ = shares;
+    bestHasFoot_ = commonFoot;
     distance_ = distance;
   }
 
@@ -176,7 +174,7 @@ class TransitionSearch {
   double bReach_, first_;
   SeenFrames ofA_, ofB_;
   std::optional<Transition> best_;
-  bool shares_ = false;
+  bool bestHasFoot_ = false;
   double distance_ = 0;
 };
 

@@ -10,22 +10,22 @@ namespace {
 
 // #joints + 1 places along a part, from 0 to 1: where each joint's bone begins, and the end. The last bone is as long
 // as the others are on average.
-std::vector<double> placesAlong(const std::vector<Index>& joints, const std::vector<Vec3>& positions) {
-  std::vector<double> places = {0};
+std::vector<double> fractionsAlong(const std::vector<Index>& joints, const std::vector<Vec3>& positions) {
+  std::vector<double> coordinates = {0};
   for (std::size_t i = 1; i < joints.size(); ++i) {
-    places.push_back(places.back() + (positions[joints[i]] - positions[joints[i - 1]]).norm());
+    coordinates.push_back(coordinates.back() + (positions[joints[i]] - positions[joints[i - 1]]).norm());
   }
-  const double length = places.back();
+  const double length = coordinates.back();
   if (length <= 0) {
     for (std::size_t i = 0; i <= joints.size(); ++i) {
-      if (i < places.size()) places[i] = static_cast<double>(i);
+      if (i < coordinates.size()) coordinates[i] = static_cast<double>(i);
     }
-    places.push_back(static_cast<double>(joints.size()));
+    coordinates.push_back(static_cast<double>(joints.size()));
   } else {
-    places.push_back(length + length / static_cast<double>(joints.size() - 1));
+    coordinates.push_back(length + length / static_cast<double>(joints.size() - 1));
   }
-  for (double& place : places) place /= places.back();
-  return places;
+  for (double& position : coordinates) position /= coordinates.back();
+  return coordinates;
 }
 
 }  // namespace
@@ -49,58 +49,59 @@ void AlignedRetargeter::followLine(const BodyPart& part, const BodyPart& nextPar
   for (const Index joint : match->target) {
     Follow& each = follows_[joint];
     each.line = Line{begin, end, (from[end] - from[begin]).normalized()};
-    if (!each.shares.empty()) continue;
-    each.shares = {{each.source, 1, setup_.sourceNeutral.rotations[each.source].conjugate()}};
+    if (!each.sources.empty()) continue;
+    each.sources = {{each.source, 1, setup_.sourceNeutral.rotations[each.source].conjugate()}};
     each.after = setup_.targetNeutral.rotations[joint];
   }
 }
 
 void AlignedRetargeter::follow(const JointMatch& match) {
   const std::vector<Quat>&from = setup_.sourceNeutral.rotations, &to = setup_.targetNeutral.rotations;
-  const std::vector<double> fromPlaces = placesAlong(match.source, setup_.sourceNeutral.restPositions);
-  const std::vector<double> toPlaces = placesAlong(match.target, setup_.targetNeutral.restPositions);
+  const std::vector<double> fromFractions = fractionsAlong(match.source, setup_.sourceNeutral.restPositions);
+  const std::vector<double> toFractions = fractionsAlong(match.target, setup_.targetNeutral.restPositions);
   for (std::size_t t = 0; t < match.target.size(); ++t) {
     const Index joint = match.target[t];
     Follow& each = follows_[joint];
     each.moved = true;
-    std::vector<Share> shares;
+    std::vector<WeightedSource> sources;
     for (std::size_t s = 0; s < match.source.size(); ++s) {
       const bool inPairs = match.source.size() == match.target.size();
-      const double overlap = std::min(fromPlaces[s + 1], toPlaces[t + 1]) - std::max(fromPlaces[s], toPlaces[t]);
-      const double weight = inPairs ? (s == t ? 1 : 0) : overlap / (toPlaces[t + 1] - toPlaces[t]);
-      if (weight > 1e-6) shares.push_back({match.source[s], weight, from[match.source[s]].conjugate()});
+      const double overlap =
+          std::min(fromFractions[s + 1], toFractions[t + 1]) - std::max(fromFractions[s], toFractions[t]);
+      const double weight = inPairs ? (s == t ? 1 : 0) : overlap / (toFractions[t + 1] - toFractions[t]);
+      if (weight > 1e-6) sources.push_back({match.source[s], weight, from[match.source[s]].conjugate()});
     }
-    if (shares.empty()) {
+    if (sources.empty()) {
       // A bone without length: what is above it.
       std::size_t s = 0;
-      while (s + 1 < match.source.size() && fromPlaces[s + 1] <= toPlaces[t]) ++s;
-      shares.push_back({match.source[s], 1, from[match.source[s]].conjugate()});
+      while (s + 1 < match.source.size() && fromFractions[s + 1] <= toFractions[t]) ++s;
+      sources.push_back({match.source[s], 1, from[match.source[s]].conjugate()});
     }
-    each.source = shares.front().source;
-    if (shares.size() == 1) {
-      each.after = shares.front().fromNeutral * to[joint];
+    each.source = sources.front().source;
+    if (sources.size() == 1) {
+      each.after = sources.front().fromNeutral * to[joint];
     } else {
       each.after = to[joint];
-      each.shares = std::move(shares);
+      each.sources = std::move(sources);
     }
   }
 }
 
 Quat AlignedRetargeter::rotationOf(const Follow& follow) const {
-  if (follow.shares.empty()) return sourceFrame_.rotations[follow.source] * follow.after;
+  if (follow.sources.empty()) return sourceFrame_.rotations[follow.source] * follow.after;
   // Each on the side of the one before: along a snake that coils the last may be turned right round from the first.
-  Quat before = sourceFrame_.rotations[follow.source] * follow.shares.front().fromNeutral;
+  Quat before = sourceFrame_.rotations[follow.source] * follow.sources.front().fromNeutral;
   Eigen::Vector4d sum = Eigen::Vector4d::Zero();
-  for (const Share& share : follow.shares) {
-    Quat turn = sourceFrame_.rotations[share.source] * share.fromNeutral;
+  for (const WeightedSource& source : follow.sources) {
+    Quat turn = sourceFrame_.rotations[source.source] * source.fromNeutral;
     if (turn.dot(before) < 0) turn.coeffs() = -turn.coeffs();
-    sum += share.weight * turn.coeffs();
+    sum += source.weight * turn.coeffs();
     before = turn;
   }
   Quat turn(Eigen::Vector4d(sum.normalized()));
   if (const std::optional<Line>& line = follow.line) {
-    const Vec3 way = sourceFrame_.positions[line->end] - sourceFrame_.positions[line->begin];
-    turn = shortestRotation(turn * line->neutral, way) * turn;
+    const Vec3 displacement = sourceFrame_.positions[line->end] - sourceFrame_.positions[line->begin];
+    turn = shortestRotation(turn * line->neutral, displacement) * turn;
   }
   return turn * follow.after;
 }
@@ -121,8 +122,8 @@ void AlignedRetargeter::next(const Pose& source, double, Pose& target) {
       targetFrame_.rotations[j] = above * local.rotation;
     }
   }
-  kinematics.place(target, targetFrame_);
-  root_.place(source, sourceFrame_, target, targetFrame_);
+  kinematics.update(target, targetFrame_);
+  root_.apply(source, sourceFrame_, target, targetFrame_);
 }
 
 std::unique_ptr<FrameRetargeter> makeAligned(const RetargetSetup& setup) {

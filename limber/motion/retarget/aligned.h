@@ -25,11 +25,11 @@ class AlignedRetargeter : public FrameRetargeter {
   const BodyFrame& sourceFrame() const { return sourceFrame_; }
   const BodyFrame& targetFrame() const { return targetFrame_; }
   BodyFrame& targetFrame() { return targetFrame_; }
-  const RootPlacer& root() const { return root_; }
+  const RootPositioner& root() const { return root_; }
 
  private:
   // The turns of several source joints, by how much of the part each has beside the target joint.
-  struct Share {
+  struct WeightedSource {
     Index source;
     double weight;
     Quat fromNeutral;  // inverse of the source joint's neutral rotation
@@ -42,16 +42,16 @@ class AlignedRetargeter : public FrameRetargeter {
   struct Follow {
     bool moved = false;
     Index source = 0;
-    Quat after = Quat::Identity();  // from the source joint's rotation to the target's
-    std::vector<Share> shares;      // where several, or a line; `after` is then the target's neutral rotation
-    std::optional<Line> line;       // that it points along, as the source's does
+    Quat after = Quat::Identity();        // from the source joint's rotation to the target's
+    std::vector<WeightedSource> sources;  // where several, or a line; `after` is then the target's neutral rotation
+    std::optional<Line> line;             // that it points along, as the source's does
   };
   void follow(const JointMatch& match);
   void followLine(const BodyPart& part, const BodyPart& nextPart);
   Quat rotationOf(const Follow& follow) const;
 
   const RetargetSetup& setup_;
-  RootPlacer root_;
+  RootPositioner root_;
   std::vector<Follow> follows_;  // #J of the target
   BodyFrame sourceFrame_, targetFrame_;
 };

@@ -101,9 +101,9 @@ TEST_F(Aligned, TheWayScalesWithTheHips) {
   const RetargetSetup setup(person, giant, matchSkeletons(person, giant), {}, &motion);
   EXPECT_NEAR(setup.scale, 2.5, 1e-9);
   const PoseSequence result = retargetFrames(findRetargetMethod("aligned"), setup, motion);
-  const Vec3 way = motion.poses.back().locals[0].translation - motion.poses.front().locals[0].translation;
+  const Vec3 displacement = motion.poses.back().locals[0].translation - motion.poses.front().locals[0].translation;
   const Vec3 giants = result.poses.back().locals[0].translation - result.poses.front().locals[0].translation;
-  EXPECT_LT((giants - 2.5 * way).norm(), 1e-6);
+  EXPECT_LT((giants - 2.5 * displacement).norm(), 1e-6);
 
   RetargetOptions unscaled;
   unscaled.rootScale = RootScale::kNone;

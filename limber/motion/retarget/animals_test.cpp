@@ -128,7 +128,7 @@ TEST(RetargetAnimals, PlantedPawsStandStill) {
   RetargetOptions options;
   options.rootScale = RootScale::kNone;  // a way too short for these legs
   const RetargetSetup setup(one, other, matchSkeletons(one, other), options, &motion);
-  const auto way = [&](const char* method) {
+  const auto displacement = [&](const char* method) {
     const PoseSequence result = retargetFrames(findRetargetMethod(method), setup, motion);
     double sum = 0;
     for (std::size_t f = 11; f < result.poses.size(); ++f) {
@@ -140,8 +140,8 @@ TEST(RetargetAnimals, PlantedPawsStandStill) {
     }
     return sum;
   };
-  EXPECT_GT(way("aligned"), 0.04);
-  EXPECT_LT(way("limb-ik"), 0.02 * way("aligned"));
+  EXPECT_GT(displacement("aligned"), 0.04);
+  EXPECT_LT(displacement("limb-ik"), 0.02 * displacement("aligned"));
 }
 
 // A body that faces elsewhere moves as it would if it did not, matched by names or by form.
@@ -195,9 +195,9 @@ TEST(RetargetAnimals, PawsGoTheSourcesWay) {
       for (std::size_t f = 5; f < 40; ++f) {
         const std::vector<Affine> from = poseGlobals(one, motion.poses[f]), to = poseGlobals(other, result.poses[f]);
         for (const AnimalLeg& leg : setup.animalLegs) {
-          const Vec3 way = from[leg.source.end].translation() - restGlobals(one)[leg.source.end].translation();
+          const Vec3 displacement = from[leg.source.end].translation() - restGlobals(one)[leg.source.end].translation();
           const Vec3 went = to[leg.target.end].translation() - restGlobals(other)[leg.target.end].translation();
-          EXPECT_LT((went - setup.scale * way).norm(), leg.source.lower == lifted ? 0.2 : 0.03) << f;
+          EXPECT_LT((went - setup.scale * displacement).norm(), leg.source.lower == lifted ? 0.2 : 0.03) << f;
         }
       }
     }
@@ -283,8 +283,8 @@ TEST(RetargetAnimals, BodiesGoWhereRootsTakeThem) {
   const RetargetSetup setup(gull, bat, matchSkeletons(gull, bat), {}, &motion);
   const PoseSequence result = retargetFrames(findRetargetMethod("aligned"), setup, motion);
   const std::vector<Affine> globals = poseGlobals(bat, result.poses[9]);
-  const Vec3 way = globals[bat.find("carrier").value()].translation() - Vec3(0, 0.5, 0);
-  EXPECT_NEAR((way - setup.scale * Vec3(0, 0.9, 1.8)).norm(), 0, 1e-9);
+  const Vec3 displacement = globals[bat.find("carrier").value()].translation() - Vec3(0, 0.5, 0);
+  EXPECT_NEAR((displacement - setup.scale * Vec3(0, 0.9, 1.8)).norm(), 0, 1e-9);
   const Quat wing(globals[bat.find("Fluegel_WingL1").value()].linear());
   EXPECT_NEAR(wing.angularDistance(Quat::Identity()) * 180 / kPi, 45, 1e-6);
 }

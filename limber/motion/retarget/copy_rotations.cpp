@@ -22,12 +22,12 @@ class CopyRetargeter : public FrameRetargeter {
       }
     }
     setup_.targetKinematics.globals(target, targetFrame_);
-    root_.place(source, sourceFrame_, target, targetFrame_);
+    root_.apply(source, sourceFrame_, target, targetFrame_);
   }
 
  private:
   const RetargetSetup& setup_;
-  RootPlacer root_;
+  RootPositioner root_;
   BodyFrame sourceFrame_, targetFrame_;
 };
 

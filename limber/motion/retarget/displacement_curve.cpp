@@ -13,7 +13,7 @@ namespace limber {
 namespace {
 
 // Passes of the active set; 10 to 100; it settles in a few, more change nothing; set by hand.
-constexpr int kMostPasses = 30;
+constexpr int kMaxPasses = 30;
 constexpr std::size_t kWidth = kThirdDifference.size() - 1;  // frames back that a third difference reaches
 
 bool isCutBetween(std::span<const CurveGoal> goals, std::size_t first, std::size_t last) {
@@ -34,15 +34,15 @@ std::vector<double> aboveBounds(const BandMatrix& matrix, const std::vector<doub
   const std::size_t n = right.size();
   std::vector<double> x(n, 0.0), step(n);
   for (std::size_t f = 0; f < n; ++f) x[f] = std::max(goals[f].least, 0.0);
-  for (int pass = 0; pass < kMostPasses; ++pass) {
-    BandMatrix held = matrix;
+  for (int pass = 0; pass < kMaxPasses; ++pass) {
+    BandMatrix factored = matrix;
     step = right;
     for (std::size_t f = 0; f < n; ++f) {
       if (x[f] >= goals[f].least) continue;
-      held.at(f, f) += weight;
+      factored.at(f, f) += weight;
       step[f] += weight * goals[f].least;
     }
-    held.solve(step);
+    factored.solve(step);
     for (std::size_t f = 0; f < n; ++f) step[f] -= x[f];
     const std::vector<double> pushed = matrix.times(step);
     const double slope = dot(pushed, x) - dot(right, step), rise = dot(pushed, step);
@@ -96,7 +96,7 @@ std::vector<double> displacementCurve(std::span<const CurveGoal> goals, double f
       }
     }
   }
-  return aboveBounds(fixed, right, goals, options.leastWeight);
+  return aboveBounds(fixed, right, goals, options.minWeight);
 }
 
 }  // namespace limber

@@ -17,9 +17,9 @@ struct CurveGoal {
 };
 
 struct CurveOptions {
-  double seconds = 0.15;     // in which it comes and goes, unasked
-  double pull = 1;           // towards 0; not 0 where goals leave a stretch between cuts to itself
-  double leastWeight = 1e6;  // of what it is below `least`, like a valueWeight
+  double seconds = 0.15;   // in which it comes and goes, unasked
+  double pull = 1;         // towards 0; not 0 where goals leave a stretch between cuts to itself
+  double minWeight = 1e6;  // of what it is below `least`, like a valueWeight
 };
 
 // Least squares over all frames: pull d^2, goals, and (seconds / frameSeconds)^6 times the squared third differences

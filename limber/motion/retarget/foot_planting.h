@@ -28,7 +28,7 @@ struct FootPlanting {
   // What has to hold for a leg's foot. `now`: the frame without changes.
   std::function<FootFrame(std::size_t frame, std::size_t leg, const BodyFrame& now)> askedOf;
   // Makes the changes of a frame: those that `moved` and `layout` have at `place`.
-  std::function<void(MovedLegs& moved, const ChangeLayout& layout, const Changes& changes, std::size_t place,
+  std::function<void(MovedLegs& moved, const ChangeLayout& layout, const Changes& changes, std::size_t index,
                      std::size_t frame)>
       change;
 };

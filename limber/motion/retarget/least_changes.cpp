@@ -28,7 +28,7 @@ ChangeLayout::ChangeLayout(std::size_t frames, std::vector<bool> tilted)
   perFrame_ = 3 * (1 + tilted_.size()) + (tilts_ ? 1 : 0);
 }
 
-Vec3 wayAt(const Changes& changes, std::size_t first) {
+Vec3 displacementAt(const Changes& changes, std::size_t first) {
   return {changes[first], changes[first + 1], changes[first + 2]};
 }
 
@@ -39,7 +39,7 @@ LeastChanges::LeastChanges(const ChangeLayout& layout, std::vector<FootFrame> fe
       cuts_(std::move(cuts)),
       ends_(std::move(ends)),
       weights_(weights),
-      held_(feet_.size()),
+      pinned_(feet_.size()),
       jerk_(layout_.frames() * layout_.perFrame(), 4 * layout_.perFrame() - 1, layout_.perFrame()),
       closeness_(jerk_),
       unbound_(jerk_),
@@ -66,7 +66,7 @@ Changes LeastChanges::find(double jerkWeight) {
   unbound_ = closeness_;
   unbound_.addScaled(jerk_, jerkWeight);
   holdPlanted(firm);
-  std::fill(held_.begin(), held_.end(), Held{});
+  std::fill(pinned_.begin(), pinned_.end(), Pinned{});
   Changes changes = start_;
   int round = 0;
   do {
@@ -141,7 +141,7 @@ void LeastChanges::holdPlanted(double weight) {
 void LeastChanges::addPelvisJerk(const ChangedMotion& now) {
   for (std::size_t f = 0; f < layout_.frames(); ++f) {
     const std::size_t at = layout_.pelvis(f);
-    values_[f] = wayAt(now.changes, at) - now.paths[0][f];
+    values_[f] = displacementAt(now.changes, at) - now.paths[0][f];
     for (std::size_t back = 0; back <= std::min<std::size_t>(f, 3); ++back) {
       for (std::size_t a = 0; a < 3; ++a) jerk_.matrix().at(at + a, layout_.pelvis(f - back) + a) += meets_[f][back];
     }
@@ -167,10 +167,11 @@ void LeastChanges::addBones(std::size_t leg, const ChangedMotion& now) {
   std::vector<double>& right = jerk_.right();
   for (std::size_t bone = 0; bone < 2; ++bone) {
     for (std::size_t f = 0; f < layout_.frames(); ++f) {
-      Eigen::Vector4d way;
-      way << wayAt(now.changes, layout_.foot(f, leg)) - wayAt(now.changes, layout_.pelvis(f)),
+      Eigen::Vector4d displacement;
+      displacement << displacementAt(now.changes, layout_.foot(f, leg)) -
+                          displacementAt(now.changes, layout_.pelvis(f)),
           layout_.isTilted(leg) ? now.changes[layout_.shoulders(f)] : 0;
-      values_[f] = slopes[bone][f] * way - now.bone(leg, bone)[f];
+      values_[f] = slopes[bone][f] * displacement - now.bone(leg, bone)[f];
     }
     pullThirds();
     for (std::size_t f = 0; f < layout_.frames(); ++f) {
@@ -233,12 +234,12 @@ bool LeastChanges::meetBounds(const Changes& changes) {
   for (std::size_t f = 0; f < layout_.frames(); ++f) {
     for (std::size_t leg = 0; leg < layout_.legs(); ++leg) {
       const FootFrame& bounds = foot(f, leg);
-      Held& held = held_[f * layout_.legs() + leg];
+      Pinned& pinned = pinned_[f * layout_.legs() + leg];
       const bool under = changes[layout_.foot(f, leg) + 1] < bounds.lowest - kTooFar;
       const bool beyond = legAt(changes, f, leg).norm() > bounds.most + kTooFar;
-      more = more || (under && !held.up) || (beyond && !held.near);
-      held.up = held.up || under;
-      held.near = held.near || beyond;
+      more = more || (under && !pinned.up) || (beyond && !pinned.near);
+      pinned.up = pinned.up || under;
+      pinned.near = pinned.near || beyond;
     }
   }
   return more;
@@ -249,10 +250,10 @@ void LeastChanges::holdBounds(double weight, const Changes& about) {
   for (std::size_t f = 0; f < layout_.frames(); ++f) {
     for (std::size_t leg = 0; leg < layout_.legs(); ++leg) {
       const FootFrame& bounds = foot(f, leg);
-      const Held& held = held_[f * layout_.legs() + leg];
+      const Pinned& pinned = pinned_[f * layout_.legs() + leg];
       const std::size_t hip = layout_.pelvis(f), end = layout_.foot(f, leg);
-      if (held.up) squares_.add(std::array{Term{end + 1, 1}}, bounds.lowest, weight);
-      if (!held.near) continue;
+      if (pinned.up) squares_.add(std::array{Term{end + 1, 1}}, bounds.lowest, weight);
+      if (!pinned.near) continue;
       const Vec3 line = legAt(about, f, leg).normalized();
       along.clear();
       for (std::size_t a = 0; a < 3; ++a) {
@@ -260,16 +261,17 @@ void LeastChanges::holdBounds(double weight, const Changes& about) {
         along.push_back({end + a, axisOf(line, a)});
       }
       if (layout_.isTilted(leg)) along.push_back({layout_.shoulders(f), -line.dot(bounds.lift)});
-      squares_.add(along, bounds.most - line.dot(bounds.way), weight);
+      squares_.add(along, bounds.most - line.dot(bounds.displacement), weight);
     }
   }
 }
 
 // From the hip to the foot.
 Vec3 LeastChanges::legAt(const Changes& changes, std::size_t frame, std::size_t leg) const {
-  Vec3 way = foot(frame, leg).way + wayAt(changes, layout_.foot(frame, leg)) - wayAt(changes, layout_.pelvis(frame));
-  if (layout_.isTilted(leg)) way -= changes[layout_.shoulders(frame)] * foot(frame, leg).lift;
-  return way;
+  Vec3 displacement = foot(frame, leg).displacement + displacementAt(changes, layout_.foot(frame, leg)) -
+                      displacementAt(changes, layout_.pelvis(frame));
+  if (layout_.isTilted(leg)) displacement -= changes[layout_.shoulders(frame)] * foot(frame, leg).lift;
+  return displacement;
 }
 
 }  // namespace limber

@@ -40,19 +40,19 @@ inline constexpr std::size_t kPartFrames = 1000;
 // Frames that a part has in common with another: third differences reach no further.
 inline constexpr std::size_t kJoinedFrames = kThirdDifference.size() - 1;
 
-Vec3 wayAt(const Changes& changes, std::size_t first);
+Vec3 displacementAt(const Changes& changes, std::size_t first);
 
 // What has to hold for a foot in one frame.
 struct FootFrame {
   bool planted = false;
-  double lowest = 0;         // change of its height, at most 0: hip heights
-  Vec3 way = Vec3::Zero();   // from the hip, likewise
-  double most = 0;           // that its leg reaches, likewise
-  Vec3 lift = Vec3::Zero();  // of its hip, for each hip height that the shoulders rise
-  Vec3 step = Vec3::Zero();  // level change from the frame before that `hold` asks for, likewise
-  double hold = 0;           // how firmly, 0 to 1
-  double height = 0;         // change of its height that `rest` asks for, likewise
-  double rest = 0;           // how firmly, 0 to 1
+  double lowest = 0;                 // change of its height, at most 0: hip heights
+  Vec3 displacement = Vec3::Zero();  // from the hip, likewise
+  double most = 0;                   // that its leg reaches, likewise
+  Vec3 lift = Vec3::Zero();          // of its hip, for each hip height that the shoulders rise
+  Vec3 step = Vec3::Zero();          // level change from the frame before that `hold` asks for, likewise
+  double hold = 0;                   // how firmly, 0 to 1
+  double height = 0;                 // change of its height that `rest` asks for, likewise
+  double rest = 0;                   // how firmly, 0 to 1
 };
 
 // What counts how much, against each other: changes in hip heights, bones in their lengths, each squared.
@@ -98,7 +98,7 @@ class LeastChanges {
 
  private:
   // Which of its bounds hold a foot in one frame: those that were met on the way to the changes.
-  struct Held {
+  struct Pinned {
     bool up = false, near = false;
   };
   using Term = BandLeastSquares::Term;
@@ -125,7 +125,7 @@ class LeastChanges {
   std::vector<bool> cuts_;
   MotionEnds ends_;
   ChangeWeights weights_;
-  std::vector<Held> held_;
+  std::vector<Pinned> pinned_;
   // How often each frame meets one so many frames back in the sum of the squared third differences.
   std::vector<std::array<double, 4>> meets_;
   Changes start_;

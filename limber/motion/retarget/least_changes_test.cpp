@@ -33,8 +33,8 @@ struct Leg {
     least.start(jolted(layout));
     return least.find(jerkWeight);
   }
-  Vec3 footAt(std::size_t frame) const { return wayAt(changes(), layout.foot(frame, 0)); }
-  Vec3 pelvisAt(std::size_t frame) const { return wayAt(changes(), layout.pelvis(frame)); }
+  Vec3 footAt(std::size_t frame) const { return displacementAt(changes(), layout.foot(frame, 0)); }
+  Vec3 pelvisAt(std::size_t frame) const { return displacementAt(changes(), layout.pelvis(frame)); }
 };
 
 // The sum that is least, of changes about those that are.
@@ -42,13 +42,14 @@ double sumOf(const ChangeLayout& layout, const ChangedMotion& now, const Changes
              const std::vector<bool>& cuts, double jerkWeight) {
   std::vector<Path> paths = now.paths;
   for (std::size_t f = 0; f < layout.frames(); ++f) {
-    const Vec3 pelvis = wayAt(changes, layout.pelvis(f)) - wayAt(now.changes, layout.pelvis(f));
+    const Vec3 pelvis = displacementAt(changes, layout.pelvis(f)) - displacementAt(now.changes, layout.pelvis(f));
     paths[0][f] += pelvis;
     for (std::size_t leg = 0; leg < layout.legs(); ++leg) {
-      const Vec3 foot = wayAt(changes, layout.foot(f, leg)) - wayAt(now.changes, layout.foot(f, leg));
-      Eigen::Vector4d way(foot.x() - pelvis.x(), foot.y() - pelvis.y(), foot.z() - pelvis.z(), 0);
-      if (layout.isTilted(leg)) way[3] = changes[layout.shoulders(f)] - now.changes[layout.shoulders(f)];
-      for (std::size_t bone = 0; bone < 2; ++bone) paths[1 + 2 * leg + bone][f] += now.slopes[leg][bone][f] * way;
+      const Vec3 foot = displacementAt(changes, layout.foot(f, leg)) - displacementAt(now.changes, layout.foot(f, leg));
+      Eigen::Vector4d displacement(foot.x() - pelvis.x(), foot.y() - pelvis.y(), foot.z() - pelvis.z(), 0);
+      if (layout.isTilted(leg)) displacement[3] = changes[layout.shoulders(f)] - now.changes[layout.shoulders(f)];
+      for (std::size_t bone = 0; bone < 2; ++bone)
+        paths[1 + 2 * leg + bone][f] += now.slopes[leg][bone][f] * displacement;
     }
   }
   double sum = jerkWeight * squaredJerk(paths, cuts, 3, layout.frames());
@@ -66,7 +67,7 @@ TEST(LeastChanges, AreTheLeast) {
   for (std::size_t i = 0; i < kFrames * layout.perFrame(); ++i) now.changes.push_back(0.1 * next());
   now.paths.assign(5, Path(kFrames));
   for (Path& path : now.paths) {
-    for (Vec3& place : path) place = Vec3(next(), next(), next());
+    for (Vec3& position : path) position = Vec3(next(), next(), next());
   }
   now.slopes.assign(2, {std::vector<Slope>(kFrames), std::vector<Slope>(kFrames)});
   for (BoneSlopes& bones : now.slopes) {
@@ -111,7 +112,7 @@ TEST(LeastChanges, FeetStayAboveTheirLowestAndWithinReach) {
   EXPECT_NEAR(leg.footAt(kJolt).y(), 0.3, 1e-4);
   EXPECT_GT(leg.footAt(kJolt - 1).y(), 0.05) << "its neighbours follow";
   Leg stretched;
-  stretched.feet[kJolt].way = Vec3(0, -1.1, 0);
+  stretched.feet[kJolt].displacement = Vec3(0, -1.1, 0);
   stretched.feet[kJolt].most = 1;
   const Vec3 reached = stretched.footAt(kJolt) - stretched.pelvisAt(kJolt) + Vec3(0, -1.1, 0);
   EXPECT_NEAR(reached.norm(), 1, 1e-4) << "by the foot and by the hip";
@@ -139,8 +140,9 @@ TEST(LeastChanges, LegsReachFromShouldersThatRise) {
   const Changes changes = least.find(1e-3);
   const double rise = changes[layout.shoulders(kJolt)];
   EXPECT_LT(rise, -0.01);
-  const Vec3 way = feet[kJolt].way + wayAt(changes, layout.foot(kJolt, 0)) - wayAt(changes, layout.pelvis(kJolt));
-  EXPECT_NEAR((way - rise * feet[kJolt].lift).norm(), 1, 1e-4);
+  const Vec3 displacement = feet[kJolt].displacement + displacementAt(changes, layout.foot(kJolt, 0)) -
+                            displacementAt(changes, layout.pelvis(kJolt));
+  EXPECT_NEAR((displacement - rise * feet[kJolt].lift).norm(), 1, 1e-4);
 }
 
 TEST(LeastChanges, FeetTakeTheStepsAndComeToTheHeightsThatAreAsked) {
@@ -159,7 +161,7 @@ TEST(LeastChanges, FeetTakeTheStepsAndComeToTheHeightsThatAreAsked) {
   for (std::size_t f = 0; f < kFrames; ++f) {
     EXPECT_NEAR(changes[layout.foot(f, 0) + 1], 0.03, 1e-5);
     if (f == 0) continue;
-    const Vec3 step = wayAt(changes, layout.foot(f, 0)) - wayAt(changes, layout.foot(f - 1, 0));
+    const Vec3 step = displacementAt(changes, layout.foot(f, 0)) - displacementAt(changes, layout.foot(f - 1, 0));
     EXPECT_NEAR((Vec3(step.x(), 0, step.z()) - Vec3(0.01, 0, -0.02)).norm(), 0, 1e-5);
   }
 }

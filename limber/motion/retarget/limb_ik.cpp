@@ -60,11 +60,11 @@ class LimbIkRetargeter : public FrameRetargeter {
   BodyFrame& to() { return aligned_.targetFrame(); }
 
   void keepArmsOut(double seconds, Pose& target) {
-    waysOut_.resize(clearance_.arms());
+    displacementsOut_.resize(clearance_.arms());
     for (std::size_t i = 0; i < clearance_.arms(); ++i) {
       for (const ArmClearance::Bone bone : {ArmClearance::Bone::kUpper, ArmClearance::Bone::kForearm}) {
-        Sprung& follow = waysOut_[i][static_cast<std::size_t>(bone)];
-        follow.drawTo(clearance_.wayOut(i, bone, to()), kArmRate, seconds);
+        Sprung& follow = displacementsOut_[i][static_cast<std::size_t>(bone)];
+        follow.drawTo(clearance_.displacementOut(i, bone, to()), kArmRate, seconds);
         clearance_.swing(i, bone, follow.value, to(), target);
       }
     }
@@ -108,8 +108,8 @@ class LimbIkRetargeter : public FrameRetargeter {
   HandGoals hands_;
   LimbReach reach_;
   ArmClearance clearance_;
-  std::vector<std::array<Sprung, 2>> waysOut_;  // of each arm's bones
-  Solvers legSolvers_, armSolvers_;             // empty: two-bone
+  std::vector<std::array<Sprung, 2>> displacementsOut_;  // of each arm's bones
+  Solvers legSolvers_, armSolvers_;                      // empty: two-bone
 };
 
 }  // namespace

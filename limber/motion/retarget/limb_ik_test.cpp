@@ -19,7 +19,9 @@ class LimbIk : public ::testing::Test {
     const RetargetSetup setup(person, odd, matchSkeletons(person, odd), options, &motion);
     return retargetFrames(findRetargetMethod(method), setup, motion);
   }
-  double sliding(const PoseSequence& result) const { return limber::testing::slidWay(person, motion, odd, result); }
+  double sliding(const PoseSequence& result) const {
+    return limber::testing::slideDistance(person, motion, odd, result);
+  }
 
   const Skeleton person = practiceHumanoid(), odd = oddlyBuilt();
   const PoseSequence motion = walk(person);

@@ -20,7 +20,7 @@ constexpr double kLoops = 0.02;
 // Jerk counts as for changes that come and go in that time: the shortest (seconds; 0.003 to 0.02), each kLonger times
 // the one before (1.05 to 1.5) until the motion is smooth, and up to so many frames (10 to 40): longer ones leave sums
 // whose weights are lost in rounding. Set by hand.
-constexpr double kShortest = 0.007, kLonger = 1.2, kMostFrames = 30;
+constexpr double kShortest = 0.007, kLonger = 1.2, kMaxFrames = 30;
 // Hip heights; 0.05 to 0.3; of any change; by the judge on half of the shared motions (0.3 before: flattened what is
 // meant).
 constexpr double kFurthest = 0.15;
@@ -88,8 +88,8 @@ class MotionSmoother {
     if (toes) ground = std::max(ground, leg.toesGround - (frame_.positions[*toes] - end).y());
     FootFrame foot;
     foot.lowest = unit * std::min(ground - end.y(), 0.0);
-    foot.way = unit * (end - frame_.positions[leg.upper]);
-    foot.most = std::max(unit * kMaxStretch * leg.length, foot.way.norm());
+    foot.displacement = unit * (end - frame_.positions[leg.upper]);
+    foot.most = std::max(unit * kMaxStretch * leg.length, foot.displacement.norm());
     if (trunk_.isFore(leg.upper)) foot.lift = TrunkTilt::liftOf(trunk_.trunkOf(frame_));
     return foot;
   }
@@ -131,7 +131,7 @@ class MotionSmoother {
     const double before = ratio(now_.paths);
     if (!ends.startsJoined && !ends.endsJoined) solveAll();
     double rough = ratio(now_.paths);
-    const double longest = kMostFrames * source_.frameSeconds;
+    const double longest = kMaxFrames * source_.frameSeconds;
     Step step = Step::kTaken;
     for (double seconds = kShortest; seconds < longest && rough > kJerkLimit && step != Step::kTooFar;
          seconds *= kLonger) {
@@ -170,11 +170,11 @@ class MotionSmoother {
 
   // As far as it gets less rough.
   Step goTowards(const Changes& aim, double& rough) {
-    double share = 1;
+    double fraction = 1;
     bool isNear = false;
-    for (int i = 0; i < kHalvings; ++i, share /= 2) {
+    for (int i = 0; i < kHalvings; ++i, fraction /= 2) {
       Changes trial = now_.changes;
-      for (std::size_t k = 0; k < trial.size(); ++k) trial[k] += share * (aim[k] - trial[k]);
+      for (std::size_t k = 0; k < trial.size(); ++k) trial[k] += fraction * (aim[k] - trial[k]);
       isNear = furthest(trial) <= kFurthest;
       if (!isNear) continue;
       if (!moved_.follow(layout_, trial, feetHere_, trialPaths_)) continue;
@@ -193,15 +193,16 @@ class MotionSmoother {
       return HUGE_VAL;
     double most = 0;
     for (std::size_t f = 0; f < layout_.frames(); ++f) {
-      most = std::max(most, wayAt(changes, layout_.pelvis(f)).norm());
-      for (std::size_t i = 0; i < legs_.size(); ++i) most = std::max(most, wayAt(changes, layout_.foot(f, i)).norm());
+      most = std::max(most, displacementAt(changes, layout_.pelvis(f)).norm());
+      for (std::size_t i = 0; i < legs_.size(); ++i)
+        most = std::max(most, displacementAt(changes, layout_.foot(f, i)).norm());
       if (layout_.tilts()) most = std::max(most, std::abs(changes[layout_.shoulders(f)]));
     }
     return most;
   }
 
   const RetargetSetup& setup_;
-  RootPlacer root_;
+  RootPositioner root_;
   LimbGoals goals_;
   const std::vector<Leg>& legs_;
   const TrunkTilt& trunk_;

@@ -10,27 +10,30 @@ constexpr double kMissed = 1e-3;  // hip heights; 1e-4 to 5e-3; by which a leg m
 
 }  // namespace
 
-MovedLegs::MovedLegs(const RetargetSetup& setup, const RootPlacer& root, const TrunkTilt& trunk, std::vector<Leg> legs)
+MovedLegs::MovedLegs(const RetargetSetup& setup, const RootPositioner& root, const TrunkTilt& trunk,
+                     std::vector<Leg> legs)
     : setup_(setup), root_(root), trunk_(trunk), reach_(setup, root), legs_(std::move(legs)) {
   const std::vector<Vec3>& rest = setup.targetNeutral.restPositions;
   for (const Leg& leg : legs_) {
     lengths_.push_back({(rest[leg.lower] - rest[leg.upper]).norm(), (rest[leg.end] - rest[leg.lower]).norm()});
   }
-  findShares();
+  findWeights();
 }
 
 // Not all that has legs carries them on one joint.
-void MovedLegs::findShares() {
+void MovedLegs::findWeights() {
   Pose pose = restPose(*setup_.target);
   BodyFrame before, after;
   setup_.targetKinematics.globals(pose, before);
   after = before;
-  const Vec3 way = setup_.targetHipHeight * Vec3::UnitY();
-  root_.movePelvis(way, pose, after);
-  const auto share = [&](const Vec3& from, const Vec3& to) { return (to - from).dot(way) / way.squaredNorm(); };
-  pelvisShare_ = share(pelvisOf(setup_.map, MapSide::kTarget, before.positions),
-                       pelvisOf(setup_.map, MapSide::kTarget, after.positions));
-  for (const Leg& leg : legs_) hipShares_.push_back(share(before.positions[leg.upper], after.positions[leg.upper]));
+  const Vec3 displacement = setup_.targetHipHeight * Vec3::UnitY();
+  root_.movePelvis(displacement, pose, after);
+  const auto weight = [&](const Vec3& from, const Vec3& to) {
+    return (to - from).dot(displacement) / displacement.squaredNorm();
+  };
+  pelvisWeight_ = weight(pelvisOf(setup_.map, MapSide::kTarget, before.positions),
+                         pelvisOf(setup_.map, MapSide::kTarget, after.positions));
+  for (const Leg& leg : legs_) hipWeights_.push_back(weight(before.positions[leg.upper], after.positions[leg.upper]));
 }
 
 ChangeLayout MovedLegs::layoutOf(std::size_t frames) const {
@@ -54,24 +57,25 @@ void MovedLegs::add(const BodyFrame& frame) {
 MovedLegs::Move MovedLegs::moveAt(const ChangeLayout& layout, const Changes& changes, std::size_t frame,
                                   double furtherUp) const {
   const double unit = setup_.targetHipHeight;
-  Move move{unit * wayAt(changes, layout.pelvis(frame))};
+  Move move{unit * displacementAt(changes, layout.pelvis(frame))};
   if (layout.tilts()) {
     move.tilt = TrunkTilt::turnFor(unit * (changes[layout.shoulders(frame)] + furtherUp), frames_[frame].trunk);
   }
   return move;
 }
 
-Vec3 MovedLegs::wayOf(const Vec3& point, double share, const Frame& frame, const Move& move) const {
-  const Vec3 shift = share * move.shift;
+Vec3 MovedLegs::displacementOf(const Vec3& point, double weight, const Frame& frame, const Move& move) const {
+  const Vec3 shift = weight * move.shift;
   if (!trunk_.tilts()) return shift;
   const Vec3 fromMiddle = point - frame.middle;
   return shift + move.tilt * fromMiddle - fromMiddle;
 }
 
-MovedLegs::Reached MovedLegs::reached(std::size_t frame, std::size_t leg, const Move& move, const Vec3& footWay) const {
+MovedLegs::Reached MovedLegs::reached(std::size_t frame, std::size_t leg, const Move& move,
+                                      const Vec3& footDisplacement) const {
   const LegFrame& seen = frames_[frame].legs[leg];
-  const Vec3 further = footWay - wayOf(seen.hip, hipShares_[leg], frames_[frame], move);
-  TwoBonePlaces places{seen.shape.middle, seen.shape.end};
+  const Vec3 further = footDisplacement - displacementOf(seen.hip, hipWeights_[leg], frames_[frame], move);
+  TwoBonePositions positions{seen.shape.middle, seen.shape.end};
   const Vec3 there = seen.shape.end + further;
   if (solvesAll_ || further.norm() > 1e-9 * legs_[leg].length) {
     LimbShape shape = seen.shape;
@@ -80,10 +84,10 @@ MovedLegs::Reached MovedLegs::reached(std::size_t frame, std::size_t leg, const 
       shape.neutralAhead = move.tilt * shape.neutralAhead;
       shape.findBend(legs_[leg]);
     }
-    places = LimbReach::placesFor(legs_[leg], shape, there);
+    positions = LimbReach::positionsFor(legs_[leg], shape, there);
   }
-  return {{places.middle / lengths_[leg][0], (places.end - places.middle) / lengths_[leg][1]},
-          (there - places.end).norm()};
+  return {{positions.middle / lengths_[leg][0], (positions.end - positions.middle) / lengths_[leg][1]},
+          (there - positions.end).norm()};
 }
 
 bool MovedLegs::follow(const ChangeLayout& layout, const Changes& changes, std::span<const FootFrame> feet,
@@ -93,9 +97,9 @@ bool MovedLegs::follow(const ChangeLayout& layout, const Changes& changes, std::
   for (std::size_t f = 0; f < layout.frames(); ++f) {
     const Move move = moveAt(layout, changes, f);
     const Vec3& pelvis = frames_[f].pelvis;
-    paths[0][f] = (pelvis + wayOf(pelvis, pelvisShare_, frames_[f], move)) / unit;
+    paths[0][f] = (pelvis + displacementOf(pelvis, pelvisWeight_, frames_[f], move)) / unit;
     for (std::size_t leg = 0; leg < legs_.size(); ++leg) {
-      const Reached to = reached(f, leg, move, unit * wayAt(changes, layout.foot(f, leg)));
+      const Reached to = reached(f, leg, move, unit * displacementAt(changes, layout.foot(f, leg)));
       if (feet[f * legs_.size() + leg].planted && to.missed > kMissed * unit) return false;
       for (std::size_t bone = 0; bone < 2; ++bone) paths[1 + 2 * leg + bone][f] = to.bones[bone];
     }
@@ -110,19 +114,20 @@ void MovedLegs::findSlopes(const ChangeLayout& layout, double probe, ChangedMoti
   for (std::size_t f = 0; f < layout.frames(); ++f) {
     const Move move = moveAt(layout, motion.changes, f);
     for (std::size_t leg = 0; leg < legs_.size(); ++leg) {
-      const Vec3 footWay = unit * wayAt(motion.changes, layout.foot(f, leg));
+      const Vec3 footDisplacement = unit * displacementAt(motion.changes, layout.foot(f, leg));
       const auto set = [&](Eigen::Index column, const Reached& before, const Reached& behind) {
         for (std::size_t bone = 0; bone < 2; ++bone) {
           motion.slopes[leg][bone][f].col(column) = (behind.bones[bone] - before.bones[bone]) / (2 * probe);
         }
       };
       for (Eigen::Index axis = 0; axis < 3; ++axis) {
-        const Vec3 way = probe * unit * Vec3::Unit(axis);
-        set(axis, reached(f, leg, move, footWay - way), reached(f, leg, move, footWay + way));
+        const Vec3 displacement = probe * unit * Vec3::Unit(axis);
+        set(axis, reached(f, leg, move, footDisplacement - displacement),
+            reached(f, leg, move, footDisplacement + displacement));
       }
       if (!layout.isTilted(leg)) continue;
-      set(3, reached(f, leg, moveAt(layout, motion.changes, f, -probe), footWay),
-          reached(f, leg, moveAt(layout, motion.changes, f, probe), footWay));
+      set(3, reached(f, leg, moveAt(layout, motion.changes, f, -probe), footDisplacement),
+          reached(f, leg, moveAt(layout, motion.changes, f, probe), footDisplacement));
     }
   }
 }
@@ -132,7 +137,7 @@ void MovedLegs::pose(const ChangeLayout& layout, const Changes& changes, std::si
   const double unit = setup_.targetHipHeight;
   setup_.targetKinematics.globals(target, posed_);
   for (std::size_t i = 0; i < legs_.size(); ++i) {
-    legs_[i].goal = posed_.positions[legs_[i].end] + unit * wayAt(changes, layout.foot(frame, i));
+    legs_[i].goal = posed_.positions[legs_[i].end] + unit * displacementAt(changes, layout.foot(frame, i));
     legs_[i].turn = Eigen::AngleAxisd(twists.empty() ? 0 : twists[i], Vec3::UnitY());
   }
   const Move move = moveAt(layout, changes, frame);

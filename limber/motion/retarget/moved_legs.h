@@ -14,7 +14,7 @@ namespace limber {
 class MovedLegs {
  public:
   // All but the legs must outlive this.
-  MovedLegs(const RetargetSetup& setup, const RootPlacer& root, const TrunkTilt& trunk, std::vector<Leg> legs);
+  MovedLegs(const RetargetSetup& setup, const RootPositioner& root, const TrunkTilt& trunk, std::vector<Leg> legs);
 
   // Of so many frames.
   ChangeLayout layoutOf(std::size_t frames) const;
@@ -55,19 +55,19 @@ class MovedLegs {
     double missed = 0;          // of the way to the goal, metres
   };
 
-  void findShares();
+  void findWeights();
   Move moveAt(const ChangeLayout& layout, const Changes& changes, std::size_t frame, double furtherUp = 0) const;
-  Vec3 wayOf(const Vec3& point, double share, const Frame& frame, const Move& move) const;
-  Reached reached(std::size_t frame, std::size_t leg, const Move& move, const Vec3& footWay) const;
+  Vec3 displacementOf(const Vec3& point, double weight, const Frame& frame, const Move& move) const;
+  Reached reached(std::size_t frame, std::size_t leg, const Move& move, const Vec3& footDisplacement) const;
 
   const RetargetSetup& setup_;
-  const RootPlacer& root_;
+  const RootPositioner& root_;
   const TrunkTilt& trunk_;
   LimbReach reach_;
   std::vector<Leg> legs_;
   // How much of the pelvis' way its point goes, and each leg's hip.
-  double pelvisShare_ = 0;
-  std::vector<double> hipShares_;
+  double pelvisWeight_ = 0;
+  std::vector<double> hipWeights_;
   std::vector<std::array<double, 2>> lengths_;  // of each leg's bones at rest
   std::vector<Frame> frames_;
   bool solvesAll_ = false;

@@ -93,9 +93,13 @@ struct Moved {
       const std::vector<Vec3>& rest = setup.targetNeutral.restPositions;
       for (std::size_t i = 0; i < goals.legs().size(); ++i) {
         const Leg& leg = goals.legs()[i];
-        const auto way = [&](const std::vector<Vec3>& at, Index from, Index to) { return Vec3(at[to] - at[from]); };
-        paths[1 + 2 * i].push_back(way(frame.positions, leg.upper, leg.lower) / way(rest, leg.upper, leg.lower).norm());
-        paths[2 + 2 * i].push_back(way(frame.positions, leg.lower, leg.end) / way(rest, leg.lower, leg.end).norm());
+        const auto displacement = [&](const std::vector<Vec3>& at, Index from, Index to) {
+          return Vec3(at[to] - at[from]);
+        };
+        paths[1 + 2 * i].push_back(displacement(frame.positions, leg.upper, leg.lower) /
+                                   displacement(rest, leg.upper, leg.lower).norm());
+        paths[2 + 2 * i].push_back(displacement(frame.positions, leg.lower, leg.end) /
+                                   displacement(rest, leg.lower, leg.end).norm());
       }
     }
     return paths;
@@ -104,7 +108,7 @@ struct Moved {
   Skeleton source, target;
   PoseSequence motion;
   RetargetSetup setup;
-  RootPlacer root{setup};
+  RootPositioner root{setup};
   LimbGoals goals{setup, root};
   MovedLegs legs{setup, root, goals.pelvis().trunk(), goals.legs()};
   ChangeLayout layout;

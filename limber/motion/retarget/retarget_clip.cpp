@@ -44,7 +44,7 @@ class PreparedClip {
   }
 
   std::vector<FootSpans> plantedFeet() const {
-    const RootPlacer root(setup_);
+    const RootPositioner root(setup_);
     const LimbGoals goals(setup_, root);
     if (!goals.active()) return {};
     const std::vector<WatchedFoot> watched = goals.watchedFeet();
@@ -65,7 +65,7 @@ class PreparedClip {
 
 PoseSequence sampleFrames(const Skeleton& skeleton, const Clip& clip, double frameRate) {
   const double last = std::round(clip.duration() * frameRate);
-  if (!(frameRate > 0) || !(last < kMostClipFrames)) {
+  if (!(frameRate > 0) || !(last < kMaxClipFrames)) {
     throw KnownError(ErrorKind::kMotionTooLong,
                      {ErrorCode::kLimit, "the motion has too many frames", clip.name, "choose a lower frame rate"},
                      {{"name", clip.name}});

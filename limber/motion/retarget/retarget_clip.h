@@ -10,7 +10,7 @@
 namespace limber {
 
 // Frames; 1e5 and more; bounds memory: 2 GB of poses of 60 joints, nine hours at 120 frames a second.
-inline constexpr Index kMostClipFrames = 4'000'000;
+inline constexpr Index kMaxClipFrames = 4'000'000;
 
 // The clip at even steps from 0 to its duration, as poses. `frameRate` in frames a second, above 0. Throws Error kLimit
 // for more than kMostClipFrames.

@@ -174,9 +174,9 @@ class Spacetime {
     asked.lowest = unit * std::max(ankleUp, toesUp);
     asked.height = std::max(leg.footDriven ? 0 : unit * (byToes ? toesUp : ankleUp), asked.lowest);
     asked.rest = leg.footDriven ? kFootDrivenRest : contacts_->firmness(f, i);
-    asked.way = unit * (now.ankle - to.positions[leg.upper]);
+    asked.displacement = unit * (now.ankle - to.positions[leg.upper]);
     asked.most = unit * planting::kStretched * leg.length;
-    if (anchor == FootAnchor::kNone) asked.most = std::max(asked.most, asked.way.norm());
+    if (anchor == FootAnchor::kNone) asked.most = std::max(asked.most, asked.displacement.norm());
     if (trunk().isFore(leg.upper)) asked.lift = TrunkTilt::liftOf(trunk().trunkOf(to));
     if (f == 0 || anchor == FootAnchor::kNone || contacts_->at(f - 1, i).anchor == FootAnchor::kNone) return asked;
     asked.hold = contacts_->firmness(f, i);
@@ -198,8 +198,8 @@ class Spacetime {
     planting.cuts = cuts_;
     planting.frameAt = [&](std::size_t f) -> const BodyFrame& { return targetAt(f); };
     planting.askedOf = [&](std::size_t f, std::size_t leg, const BodyFrame& to) { return askedOf(leg, f, to); };
-    planting.change = [&](MovedLegs& moved, const ChangeLayout& layout, const Changes& changes, std::size_t place,
-                          std::size_t f) { moved.pose(layout, changes, place, target_.poses[f], twists_[f]); };
+    planting.change = [&](MovedLegs& moved, const ChangeLayout& layout, const Changes& changes, std::size_t index,
+                          std::size_t f) { moved.pose(layout, changes, index, target_.poses[f], twists_[f]); };
     plantFeet(legs, planting);
   }
 
@@ -217,16 +217,17 @@ class Spacetime {
 
   void placeHands() {
     std::vector<Limb>& arms = hands_.arms();
-    std::vector<Goals3> ways(arms.size(), {noGoals(), noGoals(), noGoals()});
+    std::vector<Goals3> displacements(arms.size(), {noGoals(), noGoals(), noGoals()});
     for (std::size_t f = 0; f < frames(); ++f) {
       const BodyFrame& to = targetAt(f);
       hands_.set(sourceAt(f), to, 0);  // at once: the curve smooths
       for (std::size_t a = 0; a < arms.size(); ++a) {
-        follow(arms[a].wanted ? Vec3(arms[a].goal - to.positions[arms[a].end]) : Vec3(Vec3::Zero()), f, ways[a]);
+        follow(arms[a].wanted ? Vec3(arms[a].goal - to.positions[arms[a].end]) : Vec3(Vec3::Zero()), f,
+               displacements[a]);
       }
     }
     for (std::size_t a = 0; a < arms.size(); ++a) {
-      const Curve3 smooth(ways[a], target_.frameSeconds, following(kHandSeconds));
+      const Curve3 smooth(displacements[a], target_.frameSeconds, following(kHandSeconds));
       for (std::size_t f = 0; f < frames(); ++f) {
         BodyFrame& to = targetAt(f);
         arms[a].goal = to.positions[arms[a].end] + smooth.at(f);
@@ -241,9 +242,10 @@ class Spacetime {
   void keepArmsOut() {
     for (const ArmClearance::Bone bone : {ArmClearance::Bone::kUpper, ArmClearance::Bone::kForearm}) {
       for (std::size_t a = 0; a < clearance_.arms(); ++a) {
-        Goals3 ways = {noGoals(), noGoals(), noGoals()};
-        for (std::size_t f = 0; f < frames(); ++f) follow(clearance_.wayOut(a, bone, targetAt(f)), f, ways);
-        const Curve3 smooth(ways, target_.frameSeconds, following(kHandSeconds));
+        Goals3 displacements = {noGoals(), noGoals(), noGoals()};
+        for (std::size_t f = 0; f < frames(); ++f)
+          follow(clearance_.displacementOut(a, bone, targetAt(f)), f, displacements);
+        const Curve3 smooth(displacements, target_.frameSeconds, following(kHandSeconds));
         for (std::size_t f = 0; f < frames(); ++f) {
           clearance_.swing(a, bone, smooth.at(f), targetAt(f), target_.poses[f]);
         }
@@ -252,7 +254,7 @@ class Spacetime {
   }
 
   const RetargetSetup& setup_;
-  RootPlacer root_;
+  RootPositioner root_;
   LimbGoals goals_;
   HandGoals hands_;
   LimbReach reach_;

@@ -9,7 +9,7 @@ namespace limber {
 namespace {
 
 using limber::testing::oddlyBuilt;
-using limber::testing::slidWay;
+using limber::testing::slideDistance;
 using limber::testing::walk;
 
 class Spacetime : public ::testing::Test {
@@ -37,9 +37,9 @@ class Spacetime : public ::testing::Test {
 };
 
 TEST_F(Spacetime, PlantedFeetStand) {
-  const double angles = slidWay(person, motion, odd, by("aligned"));
+  const double angles = slideDistance(person, motion, odd, by("aligned"));
   ASSERT_GT(angles, 0.01);
-  EXPECT_LT(slidWay(person, motion, odd, by("spacetime")), 0.02 * angles);
+  EXPECT_LT(slideDistance(person, motion, odd, by("spacetime")), 0.02 * angles);
 }
 
 TEST_F(Spacetime, FeetStayAboveTheGround) {

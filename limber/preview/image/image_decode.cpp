@@ -15,10 +15,10 @@ namespace limber {
 namespace {
 
 bool isTooLarge(std::size_t width, std::size_t height, std::size_t fileSize) {
-  constexpr std::size_t kFree = std::size_t{1} << 24, kMost = std::size_t{1} << 26;
+  constexpr std::size_t kFree = std::size_t{1} << 24, kMax = std::size_t{1} << 26;
   if (width == 0 || height == 0 || width > 65535 || height > 65535) return true;
   const std::size_t pixels = width * height;
-  return pixels > kMost || (pixels > kFree && pixels / 64 > fileSize);
+  return pixels > kMax || (pixels > kFree && pixels / 64 > fileSize);
 }
 
 std::optional<DecodedImage> decodePng(ByteSpan file) {
@@ -65,8 +65,8 @@ struct JpegReader {
 
 // A progressive file may go over all pixels again with every few bytes.
 void stopEndlessScans(j_common_ptr info) {
-  constexpr int kMostScans = 100;
-  if (reinterpret_cast<j_decompress_ptr>(info)->input_scan_number > kMostScans) leaveJpeg(info);
+  constexpr int kMaxScans = 100;
+  if (reinterpret_cast<j_decompress_ptr>(info)->input_scan_number > kMaxScans) leaveJpeg(info);
 }
 
 void ignoreMessage(j_common_ptr) {}

@@ -60,10 +60,10 @@ Image halved(const Image& image) {
 }
 
 // The pixel that stands at `place`, which may lie beyond the picture.
-int wrapped(std::int64_t place, int size, TextureWrap wrap) {
-  if (wrap == TextureWrap::kClamp) return static_cast<int>(std::clamp<std::int64_t>(place, 0, size - 1));
+int wrapped(std::int64_t index, int size, TextureWrap wrap) {
+  if (wrap == TextureWrap::kClamp) return static_cast<int>(std::clamp<std::int64_t>(index, 0, size - 1));
   const std::int64_t period = wrap == TextureWrap::kMirror ? 2 * std::int64_t{size} : size;
-  const std::int64_t within = ((place % period) + period) % period;
+  const std::int64_t within = ((index % period) + period) % period;
   return static_cast<int>(within < size ? within : period - 1 - within);
 }
 
@@ -81,9 +81,9 @@ Texture::Texture(Image image, TextureWrap across, TextureWrap down, std::vector<
 
 Vec3 Texture::sample(const Vec2f& uv, double level) const {
   const double last = double(levels_.size() - 1);
-  const double place = level > 0 ? std::min(level, last) : 0.0;
-  const std::size_t fine = static_cast<std::size_t>(place);
-  const double part = place - double(fine);
+  const double position = level > 0 ? std::min(level, last) : 0.0;
+  const std::size_t fine = static_cast<std::size_t>(position);
+  const double part = position - double(fine);
   const Vec3 color = sampleLevel(levels_[fine], uv);
   if (!(part > 0)) return color;
   return (1 - part) * color + part * sampleLevel(levels_[fine + 1], uv);
@@ -91,11 +91,11 @@ Vec3 Texture::sample(const Vec2f& uv, double level) const {
 
 template <typename Add>
 void Texture::forNearestPixels(int width, int height, const Vec2f& uv, const Add& add) const {
-  const auto placeOf = [](float coordinate, int size) {
+  const auto positionOf = [](float coordinate, int size) {
     constexpr double kFarthest = 1e6;  // pictures away; beyond, floats do not tell pixels apart
     return std::isfinite(coordinate) ? std::clamp<double>(coordinate, -kFarthest, kFarthest) * size - 0.5 : 0.0;
   };
-  const double x = placeOf(uv.x(), width), y = placeOf(uv.y(), height);
+  const double x = positionOf(uv.x(), width), y = positionOf(uv.y(), height);
   const double left = std::floor(x), top = std::floor(y);
   for (int corner = 0; corner < 4; ++corner) {
     const int dx = corner & 1, dy = corner >> 1;

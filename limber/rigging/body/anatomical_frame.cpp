@@ -34,14 +34,14 @@ std::vector<Vec3> directions() {
   for (int i = -kNormals; i <= kNormals; ++i) {
     for (int j = -kNormals; j <= kNormals; ++j) {
       const double a = static_cast<double>(i) / kNormals, b = static_cast<double>(j) / kNormals;
-      for (const Vec3& way : {Vec3(1, a, b), Vec3(a, 1, b), Vec3(a, b, 1)}) all.push_back(way.normalized());
+      for (const Vec3& direction : {Vec3(1, a, b), Vec3(a, 1, b), Vec3(a, b, 1)}) all.push_back(direction.normalized());
     }
   }
   return all;
 }
 
 // Of the plane through the middle of the body's mass that the body is most symmetric to.
-Vec3 mostSymmetricNormal(const BodyVolume& body) {
+Vec3 maxSymmetricNormal(const BodyVolume& body) {
   AnatomicalFrame frame;
   double mass = 0;
   for (const MedialSphere& sphere : body.spheres) {
@@ -66,8 +66,8 @@ Vec3 mostSymmetricNormal(const BodyVolume& body) {
   for (double turn = kCoarseTurn; turn > kFineTurn;) {
     const Vec3 one = best.unitOrthogonal(), other = best.cross(one), from = best;
     bool better = false;
-    for (const Vec3& way : {one, Vec3(-one), other, Vec3(-other)}) {
-      better = look((from + turn * way).normalized()) || better;
+    for (const Vec3& direction : {one, Vec3(-one), other, Vec3(-other)}) {
+      better = look((from + turn * direction).normalized()) || better;
     }
     if (!better) turn /= 2;
   }
@@ -76,7 +76,7 @@ Vec3 mostSymmetricNormal(const BodyVolume& body) {
 
 // Of bodies that stand along no axis: those whose up is nearest to `ups`, with both fronts.
 std::vector<AnatomicalFrame> slantingFrames(const TriMesh& mesh, const BodyVolume& body, const std::vector<Vec3>& ups) {
-  const Vec3 left = mostSymmetricNormal(body);
+  const Vec3 left = maxSymmetricNormal(body);
   std::vector<AnatomicalFrame> frames;
   for (const Vec3& u : ups) {
     if (std::abs(u.dot(left)) > 0.5) continue;
@@ -86,7 +86,7 @@ std::vector<AnatomicalFrame> slantingFrames(const TriMesh& mesh, const BodyVolum
   return frames;
 }
 
-double leastAsymmetry(const std::vector<AnatomicalFrame>& frames) {
+double minAsymmetry(const std::vector<AnatomicalFrame>& frames) {
   double least = std::numeric_limits<double>::infinity();
   for (const AnatomicalFrame& frame : frames) least = std::min(least, frame.asymmetry);
   return least;
@@ -146,10 +146,10 @@ std::vector<AnatomicalFrame> possibleFrames(const TriMesh& mesh, const BodyVolum
       if (std::abs(u.dot(f)) < 0.5) frames.push_back(frameAlong(mesh, body, u, f));
     }
   }
-  const double along = leastAsymmetry(frames);
+  const double along = minAsymmetry(frames);
   if (front || along < kClearlySymmetric) return frames;
   const std::vector<AnatomicalFrame> slanting = slantingFrames(mesh, body, ups);
-  const double least = leastAsymmetry(slanting);
+  const double least = minAsymmetry(slanting);
   return least < std::min(kSymmetric, kMoreSymmetric * along) ? slanting : frames;
 }
 

@@ -20,7 +20,7 @@ struct AnatomicalFrame {
 
   bool symmetric() const;
   Vec3 toBody(const Vec3& point) const { return axes * (point - origin) / height; }
-  Vec3 fromBody(const Vec3& place) const { return origin + height * (axes.transpose() * place); }
+  Vec3 fromBody(const Vec3& position) const { return origin + height * (axes.transpose() * position); }
   Vec3 mirrored(const Vec3& point) const;  // both in the mesh's space
 };
 

@@ -26,10 +26,10 @@ ArmFinder::ArmFinder(const BodyVolume& body, const AnatomicalFrame& frame, const
   if (!(upper_ > 1e-3) || !(lower_ > 1e-3)) return;
   const Vec3 upperArm = (elbow - shoulder) / upper_, forearm = (hand - elbow) / lower_;
   const double length = upper_ + lower_;
-  for (double way = -kInwards * length; way < (1 + kOutwards) * length; way += step_) {
-    const Vec3& along = way < upper_ ? upperArm : forearm;
-    const BodySection section = sectionAt(body, frame, elbow + (way - upper_) * along, along, kArmSeedReach);
-    cuts_.push_back({way, section.area, section.center});
+  for (double offset = -kInwards * length; offset < (1 + kOutwards) * length; offset += step_) {
+    const Vec3& along = offset < upper_ ? upperArm : forearm;
+    const BodySection section = sectionAt(body, frame, elbow + (offset - upper_) * along, along, kArmSeedReach);
+    cuts_.push_back({offset, section.area, section.center});
   }
   findArmpit();
 }
@@ -37,7 +37,7 @@ ArmFinder::ArmFinder(const BodyVolume& body, const AnatomicalFrame& frame, const
 void ArmFinder::findArmpit() {
   std::vector<double> areas;
   for (const Cut& cut : cuts_) {
-    if (cut.way > 0.5 * upper_ && cut.way < upper_ + 0.5 * lower_ && cut.area > 0) areas.push_back(cut.area);
+    if (cut.offset > 0.5 * upper_ && cut.offset < upper_ + 0.5 * lower_ && cut.area > 0) areas.push_back(cut.area);
   }
   if (areas.empty()) return;
   std::nth_element(areas.begin(), areas.begin() + areas.size() / 2, areas.end());
@@ -45,8 +45,8 @@ void ArmFinder::findArmpit() {
   radius_ = std::sqrt(usual / kPi);
   for (std::size_t i = cuts_.size() - 1; i-- > 1;) {
     const bool trunk = cuts_[i - 1].area > std::max(kWider * usual, kJump * cuts_[i + 1].area);
-    if (cuts_[i].way > upper_ || !trunk) continue;
-    armpit_ = 0.5 * (cuts_[i].way + cuts_[i - 1].way);
+    if (cuts_[i].offset > upper_ || !trunk) continue;
+    armpit_ = 0.5 * (cuts_[i].offset + cuts_[i - 1].offset);
     return;
   }
 }
@@ -59,7 +59,7 @@ std::optional<double> ArmFinder::narrowest(double from, double to) const {
   }
   std::optional<std::size_t> best;
   for (std::size_t i = 0; i < cuts_.size(); ++i) {
-    if (cuts_[i].way < from || cuts_[i].way > to || !(cuts_[i].area > 0)) continue;
+    if (cuts_[i].offset < from || cuts_[i].offset > to || !(cuts_[i].area > 0)) continue;
     double inside = 0, outside = 0;
     for (std::size_t k = 0; k < cuts_.size(); ++k) {
       if (std::abs(static_cast<double>(k) - static_cast<double>(i)) > kThickerWithin) continue;
@@ -69,15 +69,15 @@ std::optional<double> ArmFinder::narrowest(double from, double to) const {
     if (std::min(inside, outside) < kNarrower * areas[i]) continue;
     if (!best || areas[i] < areas[*best]) best = i;
   }
-  return best ? std::optional(cuts_[*best].way) : std::nullopt;
+  return best ? std::optional(cuts_[*best].offset) : std::nullopt;
 }
 
-std::optional<Vec3> ArmFinder::middle(double way) const {
+std::optional<Vec3> ArmFinder::middle(double offset) const {
   Vec3 sum = Vec3::Zero();
   double weights = 0;
   for (const Cut& cut : cuts_) {
-    if (!(cut.area > 0) || (armpit_ && cut.way < *armpit_)) continue;
-    const double off = (cut.way - way) / (1.5 * step_);
+    if (!(cut.area > 0) || (armpit_ && cut.offset < *armpit_)) continue;
+    const double off = (cut.offset - offset) / (1.5 * step_);
     if (off * off > 9) continue;
     sum += std::exp(-off * off) * cut.center;
     weights += std::exp(-off * off);

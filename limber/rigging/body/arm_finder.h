@@ -26,11 +26,11 @@ class ArmFinder {
   std::optional<double> narrowest(double from, double to) const;
 
   // The middle of the arm; none where it was not seen thereabouts.
-  std::optional<Vec3> middle(double way) const;
+  std::optional<Vec3> middle(double offset) const;
 
  private:
   struct Cut {
-    double way, area;
+    double offset, area;
     Vec3 center;
   };
   void findArmpit();

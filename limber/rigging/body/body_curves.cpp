@@ -11,17 +11,17 @@ namespace limber {
 
 namespace {
 
-constexpr double kLevel = 2;           // grid spacings from one level set to the next
-constexpr double kLeastBranch = 0.7;   // of the radius where it hangs: shorter ones are bumps
-constexpr double kLeastLength = 0.04;  // longest sides
-constexpr double kOnPlane = 1.5;       // grid spacings off the plane between left and right
+constexpr double kLevel = 2;         // grid spacings from one level set to the next
+constexpr double kMinBranch = 0.7;   // of the radius where it hangs: shorter ones are bumps
+constexpr double kMinLength = 0.04;  // longest sides
+constexpr double kOnPlane = 1.5;     // grid spacings off the plane between left and right
 constexpr std::size_t kNoPiece = std::numeric_limits<std::size_t>::max();
 
 // One piece of a level set.
 struct Piece {
   BodyCurve::Point point;
   Mat3 spread = Mat3::Zero();  // covariance of its nodes' cells
-  double way = 0;
+  double distance = 0;
   std::size_t nodes = 0;
   bool isCentral = false;  // it lies between left and right
   std::optional<std::size_t> parent;
@@ -50,13 +50,13 @@ class CurveFinder {
 
  private:
   // With the mesh's unit, so that what is low counts like what is high.
-  Vec3 placeOf(std::size_t node) const { return frame_.height * frame_.toBody(distance_.position(node)); }
+  Vec3 positionOf(std::size_t node) const { return frame_.height * frame_.toBody(distance_.position(node)); }
   double across() const { return kOnPlane * distance_.spacing(); }
 
   void keepLeftHalf() {
     std::vector<bool> blocked(distance_.nodeCount());
     for (std::size_t node = 0; node < blocked.size(); ++node) {
-      const double x = placeOf(node).x();
+      const double x = positionOf(node).x();
       blocked[node] = x < -0.5 * distance_.spacing() ||
                       (x > across() && distance_.value(node) < 0 &&
                        distance_.at(frame_.mirrored(distance_.position(node))) >= distance_.spacing());
@@ -70,25 +70,26 @@ class CurveFinder {
     const std::size_t deepest = *std::max_element(inside_.begin(), inside_.end(), [&](std::size_t a, std::size_t b) {
       return graph_.depth(a) < graph_.depth(b);
     });
-    graph_.spreadToAll(deepest, inside_, way_, from_);
+    graph_.spreadToAll(deepest, inside_, distances_, from_);
     std::optional<std::size_t> source;
     for (const std::size_t node : inside_) {
-      if (placeOf(node).x() > across() || !std::isfinite(way_[node])) continue;
-      if (!source || way_[node] > way_[*source]) source = node;
+      if (positionOf(node).x() > across() || !std::isfinite(distances_[node])) continue;
+      if (!source || distances_[node] > distances_[*source]) source = node;
     }
     return source;
   }
 
   std::size_t levelOf(std::size_t node) const {
-    return static_cast<std::size_t>(way_[node] / static_cast<float>(kLevel * distance_.spacing()));
+    return static_cast<std::size_t>(distances_[node] / static_cast<float>(kLevel * distance_.spacing()));
   }
 
   void findPieces(std::size_t source) {
-    way_.assign(distance_.nodeCount(), std::numeric_limits<float>::infinity());
+    distances_.assign(distance_.nodeCount(), std::numeric_limits<float>::infinity());
     from_.assign(distance_.nodeCount(), source);
-    graph_.spread({source}, way_, from_);
-    std::erase_if(inside_, [&](std::size_t node) { return !std::isfinite(way_[node]); });
-    std::stable_sort(inside_.begin(), inside_.end(), [&](std::size_t a, std::size_t b) { return way_[a] < way_[b]; });
+    graph_.spread({source}, distances_, from_);
+    std::erase_if(inside_, [&](std::size_t node) { return !std::isfinite(distances_[node]); });
+    std::stable_sort(inside_.begin(), inside_.end(),
+                     [&](std::size_t a, std::size_t b) { return distances_[a] < distances_[b]; });
     pieceOf_.assign(distance_.nodeCount(), kNoPiece);
     for (const std::size_t node : inside_) {
       if (pieceOf_[node] == kNoPiece) addPiece(node);
@@ -98,7 +99,7 @@ class CurveFinder {
   void addPiece(std::size_t first) {
     const std::size_t own = pieces_.size();
     Piece piece;
-    piece.way = way_[first];
+    piece.distance = distances_[first];
     for (std::size_t node = first; from_[node] != node && !piece.parent;) {
       node = from_[node];
       if (graph_.inside(node)) piece.parent = pieceOf_[node];
@@ -108,30 +109,30 @@ class CurveFinder {
     while (!waiting.empty()) {
       const std::size_t node = waiting.back();
       waiting.pop_back();
-      const Vec3 place = placeOf(node);
-      piece.point.place += place;
-      piece.spread += place * place.transpose();
+      const Vec3 position = positionOf(node);
+      piece.point.position += position;
+      piece.spread += position * position.transpose();
       piece.point.radius = std::max(piece.point.radius, graph_.depth(node));
-      piece.isCentral = piece.isCentral || place.x() <= across();
+      piece.isCentral = piece.isCentral || position.x() <= across();
       ++piece.nodes;
       for (const std::ptrdiff_t step : graph_.steps()) {
         const std::size_t next = node + step;
-        if (pieceOf_[next] != kNoPiece || !graph_.inside(next) || !std::isfinite(way_[next])) continue;
+        if (pieceOf_[next] != kNoPiece || !graph_.inside(next) || !std::isfinite(distances_[next])) continue;
         if (levelOf(next) != levelOf(first)) continue;
         pieceOf_[next] = own;
         waiting.push_back(next);
       }
     }
     const double spacing = distance_.spacing();
-    piece.point.place /= static_cast<double>(piece.nodes);
+    piece.point.position /= static_cast<double>(piece.nodes);
     piece.spread /= static_cast<double>(piece.nodes);
     if (piece.isCentral) {
       // With the other half: about the plane.
-      piece.point.place.x() = 0;
+      piece.point.position.x() = 0;
       piece.spread.row(0).tail<2>().setZero();
       piece.spread.col(0).tail<2>().setZero();
     }
-    piece.spread -= piece.point.place * piece.point.place.transpose();
+    piece.spread -= piece.point.position * piece.point.position.transpose();
     piece.spread += spacing * spacing / 12 * Mat3::Identity();
     piece.point.area = static_cast<double>(piece.nodes) * spacing * spacing / kLevel * (piece.isCentral ? 2 : 1);
     if (piece.parent) pieces_[*piece.parent].children.push_back(own);
@@ -142,8 +143,8 @@ class CurveFinder {
   void findEnds() {
     for (std::size_t p = pieces_.size(); p-- > 0;) {
       Piece& piece = pieces_[p];
-      piece.farthest = piece.way;
-      if (piece.isCentral) piece.trunkEnd = piece.way;
+      piece.farthest = piece.distance;
+      if (piece.isCentral) piece.trunkEnd = piece.distance;
       for (const std::size_t child : piece.children) {
         piece.farthest = std::max(piece.farthest, pieces_[child].farthest);
         if (piece.isCentral) piece.trunkEnd = std::max(piece.trunkEnd, pieces_[child].trunkEnd);
@@ -156,9 +157,9 @@ class CurveFinder {
     for (Piece& piece : pieces_) {
       std::erase_if(piece.children, [&](std::size_t child) {
         const bool isTrunk = pieces_[child].trunkEnd >= 0 && pieces_[child].trunkEnd == piece.trunkEnd;
-        const double length = pieces_[child].farthest - piece.way;
-        return !isTrunk && length < piece.farthest - piece.way &&
-               length < std::max(kLeastLength, kLeastBranch * piece.point.radius);
+        const double length = pieces_[child].farthest - piece.distance;
+        return !isTrunk && length < piece.farthest - piece.distance &&
+               length < std::max(kMinLength, kMinBranch * piece.point.radius);
       });
     }
   }
@@ -183,9 +184,9 @@ class CurveFinder {
       for (std::size_t p = start.piece;;) {
         add(curve, pieces_[p].point);
         if (curve.points.size() > 1) {
-          const Vec3 way = curve.points.back().place - curve.points[curve.points.size() - 2].place;
+          const Vec3 distance = curve.points.back().position - curve.points[curve.points.size() - 2].position;
           BodyCurve::Point& point = curve.points.back();
-          point.flatness = flatnessAcross(pieces_[p].spread, way);
+          point.flatness = flatnessAcross(pieces_[p].spread, distance);
           point.radius = std::sqrt(point.area / (kPi * point.flatness));
         }
         const std::vector<std::size_t>& children = pieces_[p].children;
@@ -207,16 +208,16 @@ class CurveFinder {
   }
 
   // Of what spreads so, seen along `way`: the roots of the two variances across it.
-  static double flatnessAcross(const Mat3& spread, const Vec3& way) {
-    if (!(way.norm() > 0)) return 1;
-    const Vec3 side = way.unitOrthogonal(), other = way.normalized().cross(side);
+  static double flatnessAcross(const Mat3& spread, const Vec3& distance) {
+    if (!(distance.norm() > 0)) return 1;
+    const Vec3 side = distance.unitOrthogonal(), other = distance.normalized().cross(side);
     const double a = side.dot(spread * side), b = other.dot(spread * other), mixed = side.dot(spread * other);
     const double middle = 0.5 * (a + b), half = 0.5 * (a - b), apart = std::sqrt(half * half + mixed * mixed);
     return std::sqrt((middle + apart) / std::max(middle - apart, 1e-12));
   }
 
   static void add(BodyCurve& curve, const BodyCurve::Point& point) {
-    if (!curve.points.empty()) curve.length += (point.place - curve.points.back().place).norm();
+    if (!curve.points.empty()) curve.length += (point.position - curve.points.back().position).norm();
     curve.points.push_back(point);
   }
 
@@ -224,7 +225,7 @@ class CurveFinder {
   const AnatomicalFrame& frame_;
   InsideGraph graph_;
   std::vector<std::size_t> inside_;
-  std::vector<float> way_;
+  std::vector<float> distances_;
   std::vector<std::size_t> from_;
   std::vector<std::size_t> pieceOf_;
   std::vector<Piece> pieces_;
@@ -236,7 +237,7 @@ double BodyCurve::flatness() const {
   std::vector<double> outer;
   for (std::size_t p = (points.size() + 2) / 3; p < points.size(); ++p) {
     // What lies between left and right is both sides' in one.
-    if (!isPaired || points[p].place.x() != 0) outer.push_back(points[p].flatness);
+    if (!isPaired || points[p].position.x() != 0) outer.push_back(points[p].flatness);
   }
   if (outer.empty()) return 1;
   const auto middle = outer.begin() + static_cast<std::ptrdiff_t>(outer.size() / 2);
@@ -245,7 +246,7 @@ double BodyCurve::flatness() const {
 }
 
 Vec3 BodyCurve::root() const {
-  const Vec3 &inside = points[0].place, &outside = points[1].place;
+  const Vec3 &inside = points[0].position, &outside = points[1].position;
   return {outside.x(), 0.5 * (inside.y() + outside.y()), 0.5 * (inside.z() + outside.z())};
 }
 

@@ -13,7 +13,7 @@ namespace limber {
 // A curve through the middle of a part, from where it hangs to its end.
 struct BodyCurve {
   struct Point {
-    Vec3 place =
+    Vec3 position =
         Vec3::Zero();     // body space, but for its unit: the mesh's, so that what is low counts like what is high
     double radius = 0;    // how deep it lies, mesh
     double area = 0;      // of the section across the part, mesh squared
@@ -26,7 +26,7 @@ struct BodyCurve {
   bool isPaired = false;               // there is one on either side; this is the left one
   double length = 0;
 
-  const Vec3& end() const { return points.back().place; }
+  const Vec3& end() const { return points.back().position; }
   // Of a branch: where it comes out of its carrier, half way into the flesh, as far aside as it comes out.
   Vec3 root() const;
   // The points' in the middle, of the outer two thirds.

@@ -30,8 +30,8 @@ TEST(BodyCurves, RunFromEndToEndAndDownTheLegs) {
   const BodyCurve& trunk = curves.front();
   EXPECT_FALSE(trunk.carrier || trunk.isPaired);
   EXPECT_GT(trunk.length, 1.0);
-  for (const BodyCurve::Point& point : trunk.points) EXPECT_EQ(point.place.x(), 0);
-  EXPECT_GT(std::abs(trunk.points.front().place.z() - trunk.end().z()), 0.9) << "from the tail to the nose";
+  for (const BodyCurve::Point& point : trunk.points) EXPECT_EQ(point.position.x(), 0);
+  EXPECT_GT(std::abs(trunk.points.front().position.z() - trunk.end().z()), 0.9) << "from the tail to the nose";
   const std::vector<BodyCurve> legs = pairsOf(curves);
   ASSERT_EQ(legs.size(), 2u);
   for (const BodyCurve& leg : legs) {

@@ -7,9 +7,9 @@
 
 namespace limber {
 
-bool BodySection::contains(const Vec3& place) const {
-  const std::array<int, 2> at = {static_cast<int>(std::lround((place - origin).dot(across) / cell)),
-                                 static_cast<int>(std::lround((place - origin).dot(along) / cell))};
+bool BodySection::contains(const Vec3& position) const {
+  const std::array<int, 2> at = {static_cast<int>(std::lround((position - origin).dot(across) / cell)),
+                                 static_cast<int>(std::lround((position - origin).dot(along) / cell))};
   return std::binary_search(cells.begin(), cells.end(), at);
 }
 
@@ -29,10 +29,10 @@ BodySection sectionAt(const BodyVolume& body, const AnatomicalFrame& frame, cons
                                               : Vec3((Vec3::UnitY() - normal.y() * normal).normalized());
   section.along = section.across.cross(normal);
   section.cell = 0.5 * body.distance->spacing() / frame.height;
-  const auto placeOf = [&](double across, double along) {
+  const auto positionOf = [&](double across, double along) {
     return Vec3(seed + section.cell * (across * section.across + along * section.along));
   };
-  const auto inside = [&](const Cell& at) { return body.distance->at(frame.fromBody(placeOf(at[0], at[1]))) < 0; };
+  const auto inside = [&](const Cell& at) { return body.distance->at(frame.fromBody(positionOf(at[0], at[1]))) < 0; };
   const int around = static_cast<int>(reach / section.cell);
   Cell nearest = {};
   int best = std::numeric_limits<int>::max();
@@ -52,7 +52,7 @@ BodySection sectionAt(const BodyVolume& body, const AnatomicalFrame& frame, cons
     const Cell at = waiting.back();
     waiting.pop_back();
     section.cells.push_back(at);
-    sum += placeOf(at[0], at[1]);
+    sum += positionOf(at[0], at[1]);
     for (const auto& [di, dk] : {Cell{1, 0}, Cell{-1, 0}, Cell{0, 1}, Cell{0, -1}}) {
       const Cell next = {at[0] + di, at[1] + dk};
       if (seen.count(next) == 0 && inside(next)) {

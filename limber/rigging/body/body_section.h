@@ -19,7 +19,7 @@ struct BodySection {
   double cell = 0;                        // edge of a cell, in heights
 
   bool empty() const { return cells.empty(); }
-  bool contains(const Vec3& place) const;
+  bool contains(const Vec3& position) const;
   double halfDepth() const;  // half the extent of the part, along
 };
 

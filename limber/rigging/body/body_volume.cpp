@@ -15,12 +15,12 @@ namespace limber {
 
 namespace {
 
-constexpr double kLeastCells = 32, kMostCells = 96;  // along the longest side
-constexpr double kMostNodes = 250000;                // of the grid: fewer cells for what fills its box
-constexpr double kSphereSpacing = 0.45;              // radii that the centres of two spheres are apart, at least
-constexpr std::size_t kMostSpheres = 700;
-constexpr std::size_t kMostTips = 16;
-constexpr double kLeastReach = 0.05;  // longest sides
+constexpr double kMinCells = 32, kMaxCells = 96;  // along the longest side
+constexpr double kMaxNodes = 250000;              // of the grid: fewer cells for what fills its box
+constexpr double kSphereSpacing = 0.45;           // radii that the centres of two spheres are apart, at least
+constexpr std::size_t kMaxSpheres = 700;
+constexpr std::size_t kMaxTips = 16;
+constexpr double kMinReach = 0.05;  // longest sides
 
 std::vector<MedialSphere> medialSpheres(const SignedDistance& distance, const InsideGraph& graph,
                                         const std::vector<std::size_t>& inside) {
@@ -38,7 +38,7 @@ std::vector<MedialSphere> medialSpheres(const SignedDistance& distance, const In
       return (known.center - center).squaredNorm() < apart * apart;
     });
     if (!covered) spheres.push_back({center, graph.depth(node)});
-    if (spheres.size() == kMostSpheres) break;
+    if (spheres.size() == kMaxSpheres) break;
   }
   return spheres;
 }
@@ -51,21 +51,21 @@ std::vector<BodyTip> findTips(const SignedDistance& distance, InsideGraph& graph
   const std::size_t root = *std::min_element(inside.begin(), inside.end(), [&](std::size_t a, std::size_t b) {
     return (distance.position(a) - middle).squaredNorm() < (distance.position(b) - middle).squaredNorm();
   });
-  std::vector<float> way;
+  std::vector<float> distances;
   std::vector<std::size_t> from;
-  graph.spreadToAll(root, inside, way, from);
+  graph.spreadToAll(root, inside, distances, from);
   std::vector<std::size_t> sources = {root};
   std::vector<BodyTip> tips;
-  while (tips.size() < kMostTips) {
-    graph.spread(sources, way, from);
+  while (tips.size() < kMaxTips) {
+    graph.spread(sources, distances, from);
     std::size_t tip = root;
     for (const std::size_t node : inside) {
-      if (std::isfinite(way[node]) && way[node] > way[tip]) tip = node;
+      if (std::isfinite(distances[node]) && distances[node] > distances[tip]) tip = node;
     }
-    if (way[tip] < kLeastReach) break;
-    tips.push_back({distance.position(tip), way[tip]});
+    if (distances[tip] < kMinReach) break;
+    tips.push_back({distance.position(tip), distances[tip]});
     sources.clear();
-    for (std::size_t node = tip; way[node] > 0; node = from[node]) sources.push_back(node);
+    for (std::size_t node = tip; distances[node] > 0; node = from[node]) sources.push_back(node);
   }
   return tips;
 }
@@ -79,7 +79,7 @@ BodyVolume measureBody(const TriMesh& mesh) {
                  [&] { winding = std::make_unique<WindingNumber>(mesh, turnedPieces(mesh)); });
   BodyVolume body;
   body.distance = std::make_unique<const SignedDistance>(mesh, *surface, *winding,
-                                                         cellsForNodes(mesh, kMostNodes, kLeastCells, kMostCells));
+                                                         cellsForNodes(mesh, kMaxNodes, kMinCells, kMaxCells));
   const SignedDistance& distance = *body.distance;
   InsideGraph graph(distance);
   const std::vector<std::size_t> inside = graph.insideNodes();
@@ -87,7 +87,7 @@ BodyVolume measureBody(const TriMesh& mesh) {
     throw Error(ErrorCode::kUnsupported, "nothing lies inside the model, so that no skeleton fits into it", {},
                 "it is flat or too thin; the rigger sphere-mesh takes such models");
   }
-  body.insideShare = static_cast<double>(inside.size()) / static_cast<double>(distance.nodeCount());
+  body.insideFraction = static_cast<double>(inside.size()) / static_cast<double>(distance.nodeCount());
   body.spheres = medialSpheres(distance, graph, inside);
   if (body.spheres.empty()) {
     throw Error(ErrorCode::kUnsupported, "the model's inside cannot be told from its outside", {},

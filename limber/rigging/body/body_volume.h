@@ -26,7 +26,7 @@ struct BodyVolume {
   std::unique_ptr<const SignedDistance> distance;
   std::vector<MedialSphere> spheres;  // deepest first, a few hundred
   std::vector<BodyTip> tips;          // farthest first
-  double insideShare = 0;             // part of the grid's nodes that lie inside
+  double insideFraction = 0;          // part of the grid's nodes that lie inside
 };
 
 // Whole pieces that are turned inside out are turned back first; what lies inside is told by the winding number.

@@ -12,9 +12,9 @@ namespace limber {
 
 namespace {
 
-double nearestTip(const BodyVolume& body, const Vec3& place) {
+double nearestTip(const BodyVolume& body, const Vec3& position) {
   double least = 1;
-  for (const BodyTip& tip : body.tips) least = std::min(least, (tip.position - place).norm());
+  for (const BodyTip& tip : body.tips) least = std::min(least, (tip.position - position).norm());
   return least;
 }
 
@@ -51,7 +51,7 @@ TEST(BodyVolume, TurnsPiecesThatAreInsideOut) {
   for (std::size_t t = 0; t < mesh.triangles.size() / 3; ++t) std::swap(mesh.triangles[t][0], mesh.triangles[t][1]);
   // A third of the pieces, and a part of one: which side that one turns to does not matter.
   const BodyVolume turned = measureBody(mesh);
-  EXPECT_NEAR(turned.insideShare, right.insideShare, 0.2 * right.insideShare);
+  EXPECT_NEAR(turned.insideFraction, right.insideFraction, 0.2 * right.insideFraction);
 }
 
 TEST(BodyVolume, RefusesWhatHasNoInside) {

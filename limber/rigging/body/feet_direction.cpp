@@ -15,7 +15,7 @@ constexpr double kAnkle = 0.09;
 constexpr double kShin = 0.14;
 constexpr double kFootSeedReach = 0.05;
 constexpr double kWidestLeg = 0.025;                       // square heights of a cut: not of both legs, nor of a skirt
-constexpr double kMostLean = 0.35;                         // of the shin, to front or back for each height upwards
+constexpr double kMaxLean = 0.35;                          // of the shin, to front or back for each height upwards
 constexpr double kSmallestFoot = 0.45, kLargestFoot = 12;  // cuts of the leg: not a heel alone
 
 }  // namespace
@@ -28,7 +28,7 @@ double feetForward(const BodyVolume& body, const AnatomicalFrame& frame, std::sp
     if (leg.empty() || leg.area > kWidestLeg) continue;
     const BodySection shin =
         sectionAt(body, frame, {leg.center.x(), kShin, leg.center.z()}, Vec3::UnitY(), kFootSeedReach);
-    if (std::abs(shin.center.z() - leg.center.z()) > kMostLean * (kShin - kAnkle)) continue;  // a step
+    if (std::abs(shin.center.z() - leg.center.z()) > kMaxLean * (kShin - kAnkle)) continue;  // a step
     const BodySection print =
         sectionAt(body, frame, {leg.center.x(), kSole, leg.center.z()}, Vec3::UnitY(), kFootSeedReach);
     const double size = print.area / leg.area;

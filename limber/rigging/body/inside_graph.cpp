@@ -11,7 +11,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kMostSlope = 0.6;  // depth gained for each step: from there on a place is not in the middle
+constexpr double kMaxSlope = 0.6;  // depth gained for each step: from there on a place is not in the middle
 // Spacings outside the surface over which parts that nearly touch hang together: more where else too little does.
 constexpr double kGaps[] = {1.2, 3, 6, 12, 24};
 constexpr double kGapCost = 5;        // of a way there, times the spacings outside, against one inside
@@ -35,7 +35,7 @@ InsideGraph::InsideGraph(const SignedDistance& distance) : distance_(distance) {
 bool InsideGraph::medial(std::size_t node) const {
   for (std::size_t n = 0; n < steps_.size(); ++n) {
     const double gain = depth(node + steps_[n]) - depth(node);
-    if (gain > kMostSlope * lengths_[n] * distance_.spacing()) return false;
+    if (gain > kMaxSlope * lengths_[n] * distance_.spacing()) return false;
   }
   return true;
 }
@@ -48,19 +48,19 @@ std::vector<std::size_t> InsideGraph::insideNodes() const {
   return nodes;
 }
 
-void InsideGraph::spread(const std::vector<std::size_t>& sources, std::vector<float>& way,
+void InsideGraph::spread(const std::vector<std::size_t>& sources, std::vector<float>& distances,
                          std::vector<std::size_t>& from) const {
   using Item = std::pair<float, std::size_t>;
   std::priority_queue<Item, std::vector<Item>, std::greater<>> queue;
   for (const std::size_t node : sources) {
-    way[node] = 0;
+    distances[node] = 0;
     from[node] = node;
     queue.push({0.0f, node});
   }
   while (!queue.empty()) {
     const auto [length, node] = queue.top();
     queue.pop();
-    if (length > way[node]) continue;
+    if (length > distances[node]) continue;
     for (std::size_t n = 0; n < steps_.size(); ++n) {
       const std::size_t next = node + steps_[n];
       const double value = distance_.value(next);
@@ -68,23 +68,23 @@ void InsideGraph::spread(const std::vector<std::size_t>& sources, std::vector<fl
       const double cost = value < 0 ? 1 : kGapCost * std::max(1.0, value / distance_.spacing());
       const double step = lengths_[n] * distance_.spacing() * cost;
       const float reached = length + static_cast<float>(step);
-      if (reached >= way[next]) continue;
-      way[next] = reached;
+      if (reached >= distances[next]) continue;
+      distances[next] = reached;
       from[next] = node;
       queue.push({reached, next});
     }
   }
 }
 
-void InsideGraph::spreadToAll(std::size_t source, const std::vector<std::size_t>& inside, std::vector<float>& way,
+void InsideGraph::spreadToAll(std::size_t source, const std::vector<std::size_t>& inside, std::vector<float>& distances,
                               std::vector<std::size_t>& from) {
   from.assign(distance_.nodeCount(), source);
   for (const double gap : kGaps) {
     gap_ = gap * distance_.spacing();
-    way.assign(distance_.nodeCount(), std::numeric_limits<float>::infinity());
-    spread({source}, way, from);
+    distances.assign(distance_.nodeCount(), std::numeric_limits<float>::infinity());
+    spread({source}, distances, from);
     const auto reached =
-        std::count_if(inside.begin(), inside.end(), [&](std::size_t node) { return std::isfinite(way[node]); });
+        std::count_if(inside.begin(), inside.end(), [&](std::size_t node) { return std::isfinite(distances[node]); });
     if (static_cast<double>(reached) >= kTogether * static_cast<double>(inside.size())) return;
   }
 }
@@ -92,9 +92,9 @@ void InsideGraph::spreadToAll(std::size_t source, const std::vector<std::size_t>
 bool InsideGraph::isOpen(std::size_t node) const {
   if (!blocked_.empty() && blocked_[node]) return false;
   const auto& size = distance_.size();
-  const std::size_t place[3] = {node % size[0], node / size[0] % size[1], node / size[0] / size[1]};
+  const std::size_t index[3] = {node % size[0], node / size[0] % size[1], node / size[0] / size[1]};
   for (int axis = 0; axis < 3; ++axis) {
-    if (place[axis] == 0 || place[axis] + 1 == size[axis]) return false;
+    if (index[axis] == 0 || index[axis] + 1 == size[axis]) return false;
   }
   return true;
 }

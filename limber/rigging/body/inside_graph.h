@@ -29,10 +29,11 @@ class InsideGraph {
   const std::vector<std::ptrdiff_t>& steps() const { return steps_; }
 
   // Lowers `way` (#nodes) to the shortest way from `sources`, and remembers whence in `from` (#nodes).
-  void spread(const std::vector<std::size_t>& sources, std::vector<float>& way, std::vector<std::size_t>& from) const;
+  void spread(const std::vector<std::size_t>& sources, std::vector<float>& distances,
+              std::vector<std::size_t>& from) const;
   // The same from one source, with `way` and `from` begun anew: gaps are allowed as wide as it takes for all but a few
   // of the inside nodes to hang together, for this and what follows.
-  void spreadToAll(std::size_t source, const std::vector<std::size_t>& inside, std::vector<float>& way,
+  void spreadToAll(std::size_t source, const std::vector<std::size_t>& inside, std::vector<float>& distances,
                    std::vector<std::size_t>& from);
 
  private:

@@ -16,8 +16,8 @@ constexpr int kStaysTogether = 3;       // cuts
 
 bool LegFinder::findParting() {
   const double step = body_.distance->spacing() / frame_.height;
-  const double ankle = std::max(places_[legs_[0].ankle].y(), places_[legs_[1].ankle].y()) + 0.02;
-  const double hip = std::max(places_[legs_[0].hip].y(), places_[legs_[1].hip].y());
+  const double ankle = std::max(positions_[legs_[0].ankle].y(), positions_[legs_[1].ankle].y()) + 0.02;
+  const double hip = std::max(positions_[legs_[0].hip].y(), positions_[legs_[1].hip].y());
   int together = 0;
   for (double y = ankle; y < hip + 0.15; y += step) {
     std::array<BodySection, 2> cut;
@@ -70,7 +70,7 @@ Vec3 LegFinder::middle(int side, double y) const {
 }
 
 std::optional<Vec3> LegFinder::hock(int side) const {
-  const Vec3 &knee = places_[legs_[side].knee], &ankle = places_[legs_[side].ankle];
+  const Vec3 &knee = positions_[legs_[side].knee], &ankle = positions_[legs_[side].ankle];
   std::optional<Vec3> hock;
   double farthest = kHockBehind;
   for (const BodySection& cut : sections_[side]) {
@@ -91,11 +91,11 @@ Vec3 LegFinder::seed(int side, double y) const {
     const Vec3& last = sections_[side].back().center;
     return {last.x(), y, last.z()};
   }
-  const Vec3 &knee = places_[legs_[side].knee], &ankle = places_[legs_[side].ankle];
+  const Vec3 &knee = positions_[legs_[side].knee], &ankle = positions_[legs_[side].ankle];
   const double part = std::clamp((y - ankle.y()) / std::max(knee.y() - ankle.y(), 1e-3), 0.0, 1.0);
-  Vec3 place = ankle + part * (knee - ankle);
-  place.y() = y;
-  return place;
+  Vec3 position = ankle + part * (knee - ankle);
+  position.y() = y;
+  return position;
 }
 
 }  // namespace limber

@@ -17,9 +17,9 @@ struct LegChain {
 class LegFinder {
  public:
   // places  of the template's joints, body space; all arguments must outlive the finder
-  LegFinder(const BodyVolume& body, const AnatomicalFrame& frame, const std::vector<Vec3>& places, const LegChain& left,
-            const LegChain& right)
-      : body_(body), frame_(frame), places_(places), legs_{left, right} {}
+  LegFinder(const BodyVolume& body, const AnatomicalFrame& frame, const std::vector<Vec3>& positions,
+            const LegChain& left, const LegChain& right)
+      : body_(body), frame_(frame), positions_(positions), legs_{left, right} {}
 
   // Cuts both legs at rising heights until they have grown together. False where they do not, or so low that they are
   // no legs.
@@ -46,7 +46,7 @@ class LegFinder {
 
   const BodyVolume& body_;
   const AnatomicalFrame& frame_;
-  const std::vector<Vec3>& places_;
+  const std::vector<Vec3>& positions_;
   std::array<LegChain, 2> legs_;
   std::array<std::vector<BodySection>, 2> sections_;  // upwards
   double parting_ = 0;

@@ -11,8 +11,9 @@ namespace {
 void addBox(TriMesh& mesh, const Vec3& low, const Vec3& high) {
   const Index first = mesh.vertexCount();
   for (int corner = 0; corner < 8; ++corner) {
-    const Vec3 place(corner & 1 ? high.x() : low.x(), corner & 2 ? high.y() : low.y(), corner & 4 ? high.z() : low.z());
-    mesh.positions.push_back(place.cast<float>());
+    const Vec3 position(corner & 1 ? high.x() : low.x(), corner & 2 ? high.y() : low.y(),
+                        corner & 4 ? high.z() : low.z());
+    mesh.positions.push_back(position.cast<float>());
   }
   constexpr Index kSides[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
   for (const auto& side : kSides) {

@@ -187,17 +187,17 @@ struct Stub {
 };
 
 // In the whole model a node on the plane has each neighbour beside it twice.
-std::vector<Stub> branchesWithEnds(const std::vector<NodePlace>& places, const std::vector<VertexPair>& edges) {
-  std::vector<std::vector<Index>> neighbors(places.size());
-  std::vector<int> degree(places.size(), 0);
+std::vector<Stub> branchesWithEnds(const std::vector<NodePlacement>& placements, const std::vector<VertexPair>& edges) {
+  std::vector<std::vector<Index>> neighbors(placements.size());
+  std::vector<int> degree(placements.size(), 0);
   for (const auto& [a, b] : edges) {
     neighbors[a].push_back(b);
     neighbors[b].push_back(a);
-    degree[a] += !places[a].isPaired && places[b].isPaired ? 2 : 1;
-    degree[b] += !places[b].isPaired && places[a].isPaired ? 2 : 1;
+    degree[a] += !placements[a].isPaired && placements[b].isPaired ? 2 : 1;
+    degree[b] += !placements[b].isPaired && placements[a].isPaired ? 2 : 1;
   }
   std::vector<Stub> stubs;
-  for (Index end = 0; end < places.size(); ++end) {
+  for (Index end = 0; end < placements.size(); ++end) {
     if (degree[end] != 1) continue;
     Stub stub;
     Index before = kNoIndex, node = end;
@@ -206,15 +206,15 @@ std::vector<Stub> branchesWithEnds(const std::vector<NodePlace>& places, const s
       const auto next =
           std::find_if(neighbors[node].begin(), neighbors[node].end(), [&](Index n) { return n != before; });
       if (next == neighbors[node].end()) break;
-      stub.length += (places[node].point - places[*next].point).norm();
+      stub.length += (placements[node].point - placements[*next].point).norm();
       before = node;
       node = *next;
     }
     if (degree[node] <= 2) continue;  // all of a piece is one curve
     // What lies on the plane stays on it.
     const bool holdsPlane =
-        std::any_of(stub.nodes.begin(), stub.nodes.end(), [&](Index n) { return !places[n].isPaired; });
-    if (places[node].isPaired && holdsPlane) continue;
+        std::any_of(stub.nodes.begin(), stub.nodes.end(), [&](Index n) { return !placements[n].isPaired; });
+    if (placements[node].isPaired && holdsPlane) continue;
     stub.carrier = node;
     stubs.push_back(std::move(stub));
   }
@@ -248,32 +248,32 @@ CurveGraph curveGraph(const EvenSurface& surface, const std::vector<Vec3>& contr
   return Surgery(surface, contracted).run();
 }
 
-std::vector<NodePlace> nodePlaces(const EvenSurface& surface, const CurveGraph& graph) {
-  std::vector<NodePlace> places(graph.nodeCount);
+std::vector<NodePlacement> nodePlacements(const EvenSurface& surface, const CurveGraph& graph) {
+  std::vector<NodePlacement> placements(graph.nodeCount);
   const auto weightOf = [&](Index p) { return surface.areas[p] + 1e-15; };
-  for (NodePlace& place : places) place.isPaired = surface.isHalf;
+  for (NodePlacement& node : placements) node.isPaired = surface.isHalf;
   for (Index p = 0; p < graph.nodeOf.size(); ++p) {
-    NodePlace& place = places[graph.nodeOf[p]];
-    place.point += weightOf(p) * surface.points[p];
-    place.area += weightOf(p);
-    if (surface.onPlane[p]) place.isPaired = false;
+    NodePlacement& node = placements[graph.nodeOf[p]];
+    node.point += weightOf(p) * surface.points[p];
+    node.area += weightOf(p);
+    if (surface.onPlane[p]) node.isPaired = false;
   }
-  for (NodePlace& place : places) {
-    place.point /= place.area;
-    if (surface.isHalf && !place.isPaired) place.point.x() = 0;
+  for (NodePlacement& node : placements) {
+    node.point /= node.area;
+    if (surface.isHalf && !node.isPaired) node.point.x() = 0;
   }
   for (Index p = 0; p < graph.nodeOf.size(); ++p) {
-    NodePlace& place = places[graph.nodeOf[p]];
-    place.radius += weightOf(p) / place.area * (surface.points[p] - place.point).norm();
+    NodePlacement& node = placements[graph.nodeOf[p]];
+    node.radius += weightOf(p) / node.area * (surface.points[p] - node.point).norm();
   }
-  return places;
+  return placements;
 }
 
 void absorbStubs(const EvenSurface& surface, CurveGraph& graph) {
   for (bool isChanged = true; isChanged;) {
     isChanged = false;
-    const std::vector<NodePlace> places = nodePlaces(surface, graph);
-    for (const Stub& stub : branchesWithEnds(places, graph.edges)) {
+    const std::vector<NodePlacement> placements = nodePlacements(surface, graph);
+    for (const Stub& stub : branchesWithEnds(placements, graph.edges)) {
       std::vector<Index> to(graph.nodeCount);
       for (Index n = 0; n < to.size(); ++n) to[n] = n;
       for (const Index n : stub.nodes) to[n] = stub.carrier;
@@ -282,8 +282,8 @@ void absorbStubs(const EvenSurface& surface, CurveGraph& graph) {
       // Numbers below the carrier's own that are gone.
       Index carrier = stub.carrier;
       for (const Index n : stub.nodes) carrier -= n < stub.carrier;
-      const NodePlace both = nodePlaces(surface, absorbed)[carrier];
-      if ((places[stub.nodes.front()].point - both.point).norm() > both.radius) continue;
+      const NodePlacement both = nodePlacements(surface, absorbed)[carrier];
+      if ((placements[stub.nodes.front()].point - both.point).norm() > both.radius) continue;
       graph = std::move(absorbed);
       isChanged = true;
       break;

@@ -26,13 +26,13 @@ struct CurveGraph {
 CurveGraph curveGraph(const EvenSurface& surface, const std::vector<Vec3>& contracted);
 
 // Where a node's part of the surface lies: its middle, and the mean distance from there.
-struct NodePlace {
+struct NodePlacement {
   Vec3 point = Vec3::Zero();
   double radius = 0;
   double area = 0;
   bool isPaired = false;  // of a half: has an image
 };
-std::vector<NodePlace> nodePlaces(const EvenSurface& surface, const CurveGraph& graph);
+std::vector<NodePlacement> nodePlacements(const EvenSurface& surface, const CurveGraph& graph);
 
 // Branches that end before they leave the body, such as collapses leave at blunt ends, go into the node that they come
 // off: those whose end lies within the radius that both have together. The shortest first. Cost: O(#P) for each branch

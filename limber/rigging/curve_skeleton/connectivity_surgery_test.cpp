@@ -89,7 +89,7 @@ TEST(ConnectivitySurgery, AStubWithinTheBodyIsAbsorbed) {
   absorbStubs(tube, graph);
   EXPECT_EQ(graph.nodeCount, 6u);
   EXPECT_EQ(graph.edges, (std::vector<VertexPair>{{0, 1}, {1, 2}, {2, 3}, {3, 4}, {4, 5}}));
-  EXPECT_LT((nodePlaces(tube, graph)[3].point - Vec3(6, 0, 0)).norm(), 1e-6);
+  EXPECT_LT((nodePlacements(tube, graph)[3].point - Vec3(6, 0, 0)).norm(), 1e-6);
   // The same wall far out is a limb.
   for (const Index p : {24u, 25u}) tube.points[p] += Vec3(0, 4, 0);
   absorbStubs(tube, kept);

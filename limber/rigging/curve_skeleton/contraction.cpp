@@ -96,7 +96,7 @@ std::vector<Vec3> contractedOnce(const std::vector<Vec3>& positions, const Eigen
   constexpr int kColumns = SparseCholesky::kColumns;
   std::vector<double> x(positions.size() * kColumns, 0);
   const auto row = [&](std::size_t v) {
-    return x.data() + std::size_t{cholesky.place(static_cast<Index>(v))} * kColumns;
+    return x.data() + std::size_t{cholesky.rowOf(static_cast<Index>(v))} * kColumns;
   };
   for (std::size_t v = 0; v < positions.size(); ++v) {
     for (int i = 0; i < 3; ++i) row(v)[i] = attraction[v] * attraction[v] * positions[v][i];
@@ -114,8 +114,8 @@ std::vector<Vec3> contractSurface(const TriMesh& mesh, Progress& progress) {
   for (Index v = 0; v < mesh.vertexCount(); ++v) positions.push_back(mesh.position(v));
   Eigen::VectorXd firstMass;
   double smoothing = kFirstSmoothing * mesh.vertexCount();
-  for (int step = 0; step < kMostContractions; ++step, smoothing *= kGrowth) {
-    progress.update(static_cast<double>(step) / kMostContractions);
+  for (int step = 0; step < kMaxContractions; ++step, smoothing *= kGrowth) {
+    progress.update(static_cast<double>(step) / kMaxContractions);
     const Laplacian laplacian = robustLaplacian(shrunken, piece);
     if (step == 0) firstMass = laplacian.mass;
     if (laplacian.mass.sum() <= kContracted * firstMass.sum()) break;

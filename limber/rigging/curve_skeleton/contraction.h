@@ -30,6 +30,6 @@ std::vector<Vec3> contractedOnce(const std::vector<Vec3>& positions, const Eigen
 std::vector<Vec3> contractSurface(const TriMesh& mesh, Progress& progress);
 
 inline constexpr double kContracted = 0.004;
-inline constexpr int kMostContractions = 7;
+inline constexpr int kMaxContractions = 7;
 
 }  // namespace limber

@@ -54,14 +54,14 @@ CurveNodes refinedNodes(const EvenSurface& surface, const CurveGraph& graph) {
   CurveNodes nodes;
   nodes.edges = graph.edges;
   double total = 0;
-  const std::vector<NodePlace> places = nodePlaces(surface, graph);
-  const auto sides = [&](const NodePlace& place) { return surface.isHalf && !place.isPaired ? 2 : 1; };
-  for (const NodePlace& place : places) total += (surface.isHalf ? 2 : 1) * place.area;
-  for (const NodePlace& place : places) {
-    nodes.points.push_back(place.point);
-    nodes.radii.push_back(place.radius);
-    nodes.weights.push_back(sides(place) * place.area / total);
-    nodes.isPaired.push_back(place.isPaired);
+  const std::vector<NodePlacement> placements = nodePlacements(surface, graph);
+  const auto sides = [&](const NodePlacement& node) { return surface.isHalf && !node.isPaired ? 2 : 1; };
+  for (const NodePlacement& node : placements) total += (surface.isHalf ? 2 : 1) * node.area;
+  for (const NodePlacement& node : placements) {
+    nodes.points.push_back(node.point);
+    nodes.radii.push_back(node.radius);
+    nodes.weights.push_back(sides(node) * node.area / total);
+    nodes.isPaired.push_back(node.isPaired);
   }
   return nodes;
 }
@@ -106,16 +106,16 @@ CurveTree treeOf(const CurveNodes& nodes, const SphereMeshLevel& curves, const s
   const HandleTree whole = handleTree(curves);
   CurveTree tree;
   tree.isMirrored = !curves.images.empty();
-  std::vector<Index> placeOf(nodes.points.size(), kNoIndex);
+  std::vector<Index> positionOf(nodes.points.size(), kNoIndex);
   for (std::size_t j = 0; j < whole.order.size(); ++j) {
     const Index n = nodeOf[whole.order[j]];
-    if (placeOf[n] != kNoIndex) continue;
-    placeOf[n] = static_cast<Index>(tree.points.size());
+    if (positionOf[n] != kNoIndex) continue;
+    positionOf[n] = static_cast<Index>(tree.points.size());
     tree.points.push_back(nodes.points[n]);
     tree.radii.push_back(nodes.radii[n]);
     tree.weights.push_back(nodes.weights[n]);
     tree.isPaired.push_back(nodes.isPaired[n]);
-    tree.parents.push_back(whole.parents[j] ? placeOf[nodeOf[whole.order[*whole.parents[j]]]] : kNoIndex);
+    tree.parents.push_back(whole.parents[j] ? positionOf[nodeOf[whole.order[*whole.parents[j]]]] : kNoIndex);
   }
   return tree;
 }

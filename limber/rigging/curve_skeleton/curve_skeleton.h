@@ -34,7 +34,7 @@ class CurveSkeleton {
   SphereMeshLevel level(Index count) const;
 
   // choiceErrors, in longest sides of the mesh.
-  std::vector<double> errors(Index mostCount) const { return choiceErrors(tree_, mostCount); }
+  std::vector<double> errors(Index maxCount) const { return choiceErrors(tree_, maxCount); }
 
  private:
   SphereMeshLevel toMesh(SphereMeshLevel level) const;

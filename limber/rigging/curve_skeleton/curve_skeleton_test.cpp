@@ -22,12 +22,12 @@ CurveSkeleton curvesOf(const TriMesh& mesh) {
 }
 
 // Rings of `around` points about (u, v) -> place; the last ring meets the first where it `closes`.
-TriMesh ringsOf(int rings, int around, bool closes, const std::function<Vec3(double, double)>& place) {
+TriMesh ringsOf(int rings, int around, bool closes, const std::function<Vec3(double, double)>& position) {
   TriMesh mesh;
   for (int r = 0; r < rings; ++r) {
     for (int i = 0; i < around; ++i) {
       const double u = closes ? 2 * kPi * r / rings : r / (rings - 1.0);
-      mesh.positions.push_back(place(u, 2 * kPi * i / around).cast<float>());
+      mesh.positions.push_back(position(u, 2 * kPi * i / around).cast<float>());
     }
   }
   const auto at = [&](int r, int i) { return static_cast<Index>(r % rings * around + i % around); };

@@ -13,8 +13,8 @@ namespace limber {
 
 namespace {
 
-constexpr double kOnPlane = 1e-3;            // longest sides from the mirror plane within which a point is put onto it
-constexpr std::size_t kMostSplits = 50'000;  // points that splitting may add, for thousands of needles
+constexpr double kOnPlane = 1e-3;           // longest sides from the mirror plane within which a point is put onto it
+constexpr std::size_t kMaxSplits = 50'000;  // points that splitting may add, for thousands of needles
 
 // A new point on each of some edges.
 class EdgePoints {
@@ -144,7 +144,7 @@ void splitTriangle(const std::vector<Vec3>& points, Triangle v, std::array<Index
 }
 
 void splitLongEdges(double longest, std::vector<Vec3>& points, std::vector<Triangle>& triangles) {
-  const std::size_t most = points.size() + kMostSplits;
+  const std::size_t most = points.size() + kMaxSplits;
   for (bool isSplit = true; isSplit;) {
     EdgePoints middles;
     for (const Triangle& t : triangles) {
@@ -226,10 +226,10 @@ DisjointSets gatheredInCells(const EvenSurface& surface, double cell) {
   return sets;
 }
 
-void gatherPoints(std::size_t mostPoints, double cell, EvenSurface& surface) {
+void gatherPoints(std::size_t maxPoints, double cell, EvenSurface& surface) {
   DisjointSets sets = gatheredInCells(surface, cell);
   // Pieces never merge: of so many that the cells cannot be large enough each becomes a point.
-  for (; sets.count() > mostPoints && cell < 2; cell *= 1.15) sets = gatheredInCells(surface, 1.15 * cell);
+  for (; sets.count() > maxPoints && cell < 2; cell *= 1.15) sets = gatheredInCells(surface, 1.15 * cell);
   std::vector<Index> pointOf(surface.points.size(), kNoIndex);
   EvenSurface gathered;
   std::vector<double> weights;
@@ -278,7 +278,7 @@ void dropUnused(std::vector<Vec3>& points, std::vector<Triangle>& triangles) {
 
 }  // namespace
 
-EvenSurface evenSurface(const TriMesh& mesh, const CollapseFrame& frame, bool isMirrored, Index mostPoints) {
+EvenSurface evenSurface(const TriMesh& mesh, const CollapseFrame& frame, bool isMirrored, Index maxPoints) {
   EvenSurface surface;
   surface.isHalf = isMirrored;
   std::vector<Vec3>& points = surface.points;
@@ -294,7 +294,7 @@ EvenSurface evenSurface(const TriMesh& mesh, const CollapseFrame& frame, bool is
 
   double area = 0;
   for (const Triangle& t : surface.triangles) area += areaOf(points, t);
-  const std::size_t most = isMirrored ? mostPoints / 2 : mostPoints;
+  const std::size_t most = isMirrored ? maxPoints / 2 : maxPoints;
   // The edges of so many points in a triangular lattice.
   const double spacing = std::sqrt(area / (0.866 * static_cast<double>(most)));
   if (spacing > 0) splitLongEdges(1.5 * spacing, points, surface.triangles);

@@ -26,7 +26,7 @@ struct EvenSurface {
   std::vector<VertexPair> edges;
 };
 
-inline constexpr Index kMostEvenPoints = 3000;  // of the whole model
+inline constexpr Index kMaxEvenPoints = 3000;  // of the whole model
 
 // Closes holes by fans, splits edges that are longer than points of an even sampling are apart, then gathers points
 // that the surface joins within one cell of a grid, until there are at most `mostPoints` (of the whole model). What
@@ -35,7 +35,7 @@ inline constexpr Index kMostEvenPoints = 3000;  // of the whole model
 // Points without a triangle are left out. Empty where there is no triangle. Cost: O(#V + #F) and some 100 bytes a
 // vertex.
 EvenSurface evenSurface(const TriMesh& mesh, const CollapseFrame& frame, bool isMirrored,
-                        Index mostPoints = kMostEvenPoints);
+                        Index maxPoints = kMaxEvenPoints);
 
 // The whole model: the half and its mirror image, joined on the plane.
 struct UnfoldedSurface {

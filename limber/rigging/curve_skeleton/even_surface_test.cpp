@@ -12,7 +12,7 @@ namespace limber {
 
 namespace {
 
-EvenSurface evenOf(const TriMesh& mesh, bool isMirrored, Index most = kMostEvenPoints) {
+EvenSurface evenOf(const TriMesh& mesh, bool isMirrored, Index most = kMaxEvenPoints) {
   const std::optional<MirrorPlane> plane = isMirrored ? std::optional<MirrorPlane>(MirrorPlane{}) : std::nullopt;
   return evenSurface(mesh, CollapseFrame::of(mesh, plane), isMirrored, most);
 }

@@ -170,9 +170,10 @@ void JointChooser::addBone(Index branch, Index from, Index to, double begin, dou
   const auto first = std::upper_bound(curve.arc.begin(), curve.arc.end(), begin);
   for (std::size_t i = static_cast<std::size_t>(first - curve.arc.begin()); i < curve.arc.size(); ++i) {
     if (curve.arc[i] >= end) break;
-    const Vec3 way = tree_.points[curve.nodes[i]] - a;
-    const double part = along.squaredNorm() > 0 ? std::clamp(way.dot(along) / along.squaredNorm(), 0.0, 1.0) : 0;
-    const double distance = (way - part * along).norm();
+    const Vec3 displacement = tree_.points[curve.nodes[i]] - a;
+    const double part =
+        along.squaredNorm() > 0 ? std::clamp(displacement.dot(along) / along.squaredNorm(), 0.0, 1.0) : 0;
+    const double distance = (displacement - part * along).norm();
     if (distance > off) {
       off = distance;
       farthestArc = curve.arc[i];
@@ -342,8 +343,8 @@ SphereMeshLevel chooseJoints(const CurveTree& tree, Index count) {
   return JointChooser(tree).run(count);
 }
 
-std::vector<double> choiceErrors(const CurveTree& tree, Index mostCount) {
-  return JointChooser(tree).errors(mostCount);
+std::vector<double> choiceErrors(const CurveTree& tree, Index maxCount) {
+  return JointChooser(tree).errors(maxCount);
 }
 
 }  // namespace limber

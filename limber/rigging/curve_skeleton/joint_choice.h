@@ -34,6 +34,6 @@ SphereMeshLevel chooseJoints(const CurveTree& tree, Index count);
 
 // For each count from 0 (infinite) to mostCount what counts most of what is not joined yet, as above: a length, never
 // growing. Where two joints come at once, the count between has the value of the one above it.
-std::vector<double> choiceErrors(const CurveTree& tree, Index mostCount);
+std::vector<double> choiceErrors(const CurveTree& tree, Index maxCount);
 
 }  // namespace limber

@@ -91,9 +91,10 @@ TEST(JointChoice, TakesLongBranchesFirst) {
 TEST(JointChoice, HalvesWhatIsStraight) {
   CurveTree tree = rootAlone();
   addCurve(tree, 0, {8, 0, 0}, 80);
-  std::set<double> places;
-  for (const Sphere& sphere : chooseJoints(tree, 5).spheres) places.insert(std::round(1e6 * sphere.center.x()) / 1e6);
-  EXPECT_EQ(places, (std::set<double>{0, 2, 4, 6, 8}));
+  std::set<double> positions;
+  for (const Sphere& sphere : chooseJoints(tree, 5).spheres)
+    positions.insert(std::round(1e6 * sphere.center.x()) / 1e6);
+  EXPECT_EQ(positions, (std::set<double>{0, 2, 4, 6, 8}));
 }
 
 TEST(JointChoice, PutsAJointWhereTheCurveBends) {

@@ -126,10 +126,10 @@ void fitJoints(std::span<const Vec3f> rest, const BoneMotions& motions, const st
                std::vector<BonePair>& pairs) {
   Box box;
   for (const Vec3f& p : rest) box.add(p.cast<double>());
-  std::vector<double> mostShared(motions.boneCount(), 0);
+  std::vector<double> maxShared(motions.boneCount(), 0);
   for (const BonePair& pair : pairs) {
-    mostShared[pair.a] = std::max(mostShared[pair.a], pair.shared);
-    mostShared[pair.b] = std::max(mostShared[pair.b], pair.shared);
+    maxShared[pair.a] = std::max(maxShared[pair.a], pair.shared);
+    maxShared[pair.b] = std::max(maxShared[pair.b], pair.shared);
   }
   parallelFor(pairs.size(), 4, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -137,7 +137,7 @@ void fitJoints(std::span<const Vec3f> rest, const BoneMotions& motions, const st
       const Gap gap = gapBetween(regions[pair.a], regions[pair.b]);
       const Vec3 anchor = (pair.sharedAt + kOneShared * gap.middle) / (pair.shared + kOneShared);
       const double apart = fitJoint(motions, anchor, box, pair);
-      const double most = std::min(mostShared[pair.a], mostShared[pair.b]);
+      const double most = std::min(maxShared[pair.a], maxShared[pair.b]);
       const double affinity = most > 0 ? std::min(1.0, pair.shared / most) : 0;
       pair.cost = (apart + gap.distance) * (2 - affinity);
     }

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kBlocksFitted = 8;
 constexpr Index kLanes = VertexSequence::kLanes;
-constexpr float kLeastWeight = 1e-4f;  // lighter influences are rounding of the frames
+constexpr float kMinWeight = 1e-4f;  // lighter influences are rounding of the frames
 
 // Sums over the frames of M_a' * M_b for all pairs of bones: what a product of two motions of one point is made of.
 class MotionProducts {
@@ -87,7 +87,7 @@ class BlockSums {
 
 // The bones that a point is weighed against.
 struct Candidates {
-  std::array<Index, kMostCandidates> bones = {};
+  std::array<Index, kMaxCandidates> bones = {};
   Index count = 0;
 
   bool has(Index bone) const { return std::find(bones.begin(), bones.begin() + count, bone) != bones.begin() + count; }
@@ -145,9 +145,9 @@ class WeightFit {
         if (before_.weightsOf(v)[i] > 0) candidates.bones[candidates.count++] = before_.jointsOf(v)[i];
       }
     }
-    const std::size_t tried = std::min<std::size_t>(alone.size(), kMostCandidates);
+    const std::size_t tried = std::min<std::size_t>(alone.size(), kMaxCandidates);
     std::partial_sort(alone.begin(), alone.begin() + static_cast<std::ptrdiff_t>(tried), alone.end());
-    for (std::size_t i = 0; i < tried && candidates.count < kMostCandidates; ++i) {
+    for (std::size_t i = 0; i < tried && candidates.count < kMaxCandidates; ++i) {
       if (!candidates.has(alone[i].second)) candidates.bones[candidates.count++] = alone[i].second;
     }
     return candidates;
@@ -165,12 +165,12 @@ class WeightFit {
 
   // Strongest first.
   void store(Index v, const Candidates& candidates, const WeightProblem::Vector& weights) {
-    std::array<std::pair<float, Index>, kMostCandidates> used;
+    std::array<std::pair<float, Index>, kMaxCandidates> used;
     std::size_t count = 0;
     float sum = 0;
     for (Index i = 0; i < candidates.count; ++i) {
       const auto weight = static_cast<float>(weights[i]);
-      if (weight < kLeastWeight) continue;
+      if (weight < kMinWeight) continue;
       used[count++] = {-weight, candidates.bones[i]};
       sum += weight;
     }
@@ -194,7 +194,7 @@ class WeightFit {
 
 FittedWeights fitWeights(const VertexSequence& sequence, const BoneMotions& motions, Index maxInfluences,
                          const SkinWeights& before) {
-  if (maxInfluences < 1 || maxInfluences > kMostInfluences || before.slots > kMostInfluences) {
+  if (maxInfluences < 1 || maxInfluences > kMaxInfluences || before.slots > kMaxInfluences) {
     throw Error(ErrorCode::kBadArgument, "points can follow 1 to 8 bones");
   }
   return WeightFit(sequence, motions, maxInfluences, before).run();

@@ -9,7 +9,7 @@
 
 namespace limber {
 
-inline constexpr Index kMostInfluences = 8;  // of a point
+inline constexpr Index kMaxInfluences = 8;  // of a point
 
 struct FittedWeights {
   SkinWeights weights;         // of #points, slots as asked for

@@ -19,7 +19,7 @@ constexpr double kDamping = 1e-10;
 constexpr double kGain = 1e-10;
 
 struct Support {
-  std::array<int, kMostCandidates> members = {};
+  std::array<int, kMaxCandidates> members = {};
   int count = 0;
 
   void add(int member) { members[count++] = member; }
@@ -30,36 +30,36 @@ struct Support {
 };
 
 // The least value over the support with sum 1 and without regard to signs; the others are 0.
-Vector leastOver(const WeightProblem& problem, const Support& support) {
+Vector minOver(const WeightProblem& problem, const Support& support) {
   Vector weights = Vector::Zero(problem.linear.size());
   const int base = support.members[0], size = support.count - 1;
   const auto& gram = problem.gram;
   WeightProblem::Matrix differences(size, size);
-  Vector shares(size);
+  Vector fractions(size);
   for (int i = 0; i < size; ++i) {
     const int a = support.members[i + 1];
     for (int j = 0; j < size; ++j) {
       const int b = support.members[j + 1];
       differences(i, j) = gram(a, b) - gram(a, base) - gram(base, b) + gram(base, base);
     }
-    shares[i] = problem.linear[a] - problem.linear[base] - gram(a, base) + gram(base, base);
+    fractions[i] = problem.linear[a] - problem.linear[base] - gram(a, base) + gram(base, base);
   }
   if (size > 0) {
-    solveCholesky(differences, kDamping * gram.diagonal().maxCoeff(), shares);
+    solveCholesky(differences, kDamping * gram.diagonal().maxCoeff(), fractions);
   }
   weights[base] = 1;
   for (int i = 0; i < size; ++i) {
-    weights[support.members[i + 1]] = shares[i];
-    weights[base] -= shares[i];
+    weights[support.members[i + 1]] = fractions[i];
+    weights[base] -= fractions[i];
   }
   return weights;
 }
 
 // Goes from `weights`, which are 0 or more, towards the least value over the support; a member that comes to 0 on the
 // way leaves it.
-Vector feasibleLeast(const WeightProblem& problem, Support& support, Vector weights) {
+Vector feasibleMin(const WeightProblem& problem, Support& support, Vector weights) {
   while (true) {
-    const Vector wanted = leastOver(problem, support);
+    const Vector wanted = minOver(problem, support);
     double step = 1;
     std::optional<int> blocking;
     for (int i = 0; i < support.count; ++i) {
@@ -137,14 +137,14 @@ Solution bestAlone(const WeightProblem& problem, const Support& allowed) {
 
 // From weights that are 0 or more and sum to 1 to the best among the bones allowed.
 Solution solveAmong(const WeightProblem& problem, const Support& allowed, Solution solution) {
-  solution.weights = feasibleLeast(problem, solution.support, solution.weights);
+  solution.weights = feasibleMin(problem, solution.support, solution.weights);
   double value = solution.value(problem);
-  for (Index round = 0; round < 4 * kMostCandidates; ++round) {
+  for (Index round = 0; round < 4 * kMaxCandidates; ++round) {
     const std::optional<int> entering = steepest(problem, solution, allowed);
     if (!entering) break;
     Solution next = solution;
     next.support.add(*entering);
-    next.weights = feasibleLeast(problem, next.support, next.weights);
+    next.weights = feasibleMin(problem, next.support, next.weights);
     const double better = next.value(problem);
     if (!(better < value)) break;  // rounding
     solution = next;

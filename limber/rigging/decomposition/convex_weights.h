@@ -6,13 +6,13 @@
 namespace limber {
 
 // Bones that are weighed against each other for one vertex; see sparseConvexWeights.
-inline constexpr Index kMostCandidates = 16;
+inline constexpr Index kMaxCandidates = 16;
 
 // A function of weights w: w' gram w - 2 linear' w, where gram (symmetric, positive semi-definite) and linear are sums
 // over frames of products of where the bones take the vertex and where it is.
 struct WeightProblem {
-  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostCandidates, kMostCandidates>;
-  using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostCandidates, 1>;
+  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxCandidates, kMaxCandidates>;
+  using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxCandidates, 1>;
   Matrix gram;    // #m x #m, #m from 1 to kMostCandidates
   Vector linear;  // #m
 

@@ -21,7 +21,7 @@ struct SharedMoment {
 class SharedMoments {
  public:
   SharedMoments(const VertexSequence& sequence, const SkinWeights& weights, Index boneCount)
-      : boneCount_(boneCount), place_(std::size_t{boneCount} * boneCount, kNoIndex) {
+      : boneCount_(boneCount), slot_(std::size_t{boneCount} * boneCount, kNoIndex) {
     for (Index v = 0; v < sequence.pointCount(); ++v) {
       const Vec4 p = sequence.rest[v].cast<double>().homogeneous();
       const auto joints = weights.jointsOf(v);
@@ -40,16 +40,16 @@ class SharedMoments {
 
  private:
   Mat4& between(Index a, Index b) {
-    Index& place = place_[std::size_t{a} * boneCount_ + b];
-    if (place == kNoIndex) {
-      place = static_cast<Index>(moments_.size());
+    Index& slot = slot_[std::size_t{a} * boneCount_ + b];
+    if (slot == kNoIndex) {
+      slot = static_cast<Index>(moments_.size());
       moments_.push_back({a, b});
     }
-    return moments_[place].moment;
+    return moments_[slot].moment;
   }
 
   Index boneCount_;
-  std::vector<Index> place_;
+  std::vector<Index> slot_;
   std::vector<SharedMoment> moments_;
 };
 

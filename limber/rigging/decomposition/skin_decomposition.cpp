@@ -16,10 +16,10 @@ namespace limber {
 
 namespace {
 
-constexpr double kLeastShare = 1;   // sum of squared weights: a bone with less than one point of its own is reseeded
-constexpr int kLastIterations = 5;  // in which no bone is reseeded, so that all settle
-constexpr double kStands = 1e-4;    // relative fall of the error below which nothing more is to be had
-constexpr double kWorthMore = 0.9;  // of the error with half as many bones: more bones are not worth it
+constexpr double kMinFraction = 1;   // sum of squared weights: a bone with less than one point of its own is reseeded
+constexpr int kLastIterations = 5;   // in which no bone is reseeded, so that all settle
+constexpr double kConverged = 1e-4;  // relative fall of the error below which nothing more is to be had
+constexpr double kWorthMore = 0.9;   // of the error with half as many bones: more bones are not worth it
 
 // A sequence about the origin with a box of unit diagonal at rest, every frame about its own middle; and the way back.
 class Centred {
@@ -62,9 +62,9 @@ class Centred {
     middle /= sequence.pointCount();
     middles_[f] = middle;
     for (Index v = 0; v < sequence.pointCount(); ++v) {
-      const Vec3f place = ((sequence.at(v, f).cast<double>() - middle) / diagonal_).cast<float>();
-      if (!std::isfinite(place.squaredNorm())) middles_[f].fill(std::numeric_limits<double>::quiet_NaN());
-      sequence.set(v, f, place);
+      const Vec3f position = ((sequence.at(v, f).cast<double>() - middle) / diagonal_).cast<float>();
+      if (!std::isfinite(position.squaredNorm())) middles_[f].fill(std::numeric_limits<double>::quiet_NaN());
+      sequence.set(v, f, position);
     }
   }
 
@@ -73,12 +73,12 @@ class Centred {
   std::vector<Vec3> middles_;  // #frames
 };
 
-std::vector<double> sharesOf(const SkinWeights& weights, Index bones) {
-  std::vector<double> shares(bones, 0);
+std::vector<double> jointWeightsOf(const SkinWeights& weights, Index bones) {
+  std::vector<double> fractions(bones, 0);
   for (std::size_t i = 0; i < weights.weights.size(); ++i) {
-    shares[weights.joints[i]] += double{weights.weights[i]} * weights.weights[i];
+    fractions[weights.joints[i]] += double{weights.weights[i]} * weights.weights[i];
   }
-  return shares;
+  return fractions;
 }
 
 double rootMeanSquare(const VertexSequence& sequence, const std::vector<double>& errors) {
@@ -89,12 +89,12 @@ double rootMeanSquare(const VertexSequence& sequence, const std::vector<double>&
 
 // Bones with next to no weight take the motion of the neighbourhood that fits worst.
 bool reseed(const VertexSequence& sequence, FittedWeights& fitted, BoneMotions& motions) {
-  const std::vector<double> shares = sharesOf(fitted.weights, motions.boneCount());
+  const std::vector<double> fractions = jointWeightsOf(fitted.weights, motions.boneCount());
   std::vector<bool> isTaken(sequence.pointCount(), false);
   const std::size_t seedCount = seedPoints(sequence.pointCount() / motions.boneCount());
   bool any = false;
   for (Index b = 0; b < motions.boneCount(); ++b) {
-    if (shares[b] >= kLeastShare) continue;
+    if (fractions[b] >= kMinFraction) continue;
     Index worst = kNoIndex;
     for (Index v = 0; v < sequence.pointCount(); ++v) {
       if (!isTaken[v] && (worst == kNoIndex || fitted.errors[v] > fitted.errors[worst])) worst = v;
@@ -112,7 +112,8 @@ bool reseed(const VertexSequence& sequence, FittedWeights& fitted, BoneMotions& 
 
 void dropUnused(Decomposition& result) {
   std::vector<bool> isUsed;
-  for (const double share : sharesOf(result.weights, result.motions.boneCount())) isUsed.push_back(share > 0);
+  for (const double fraction : jointWeightsOf(result.weights, result.motions.boneCount()))
+    isUsed.push_back(fraction > 0);
   const std::vector<Index> renumbered = compactBones(result.motions, isUsed);
   for (std::size_t i = 0; i < result.weights.joints.size(); ++i) {
     Index& joint = result.weights.joints[i];
@@ -136,7 +137,7 @@ Decomposition decomposeWith(const VertexSequence& sequence, Index bones, const D
     const double before = error;
     error = rootMeanSquare(sequence, fitted.errors);
     if (error < best.error) best = {motions, fitted.weights, error};
-    if (!isNew && before - error <= kStands * before) break;
+    if (!isNew && before - error <= kConverged * before) break;
   }
   dropUnused(best);
   return best;
@@ -146,7 +147,7 @@ Decomposition decomposeWith(const VertexSequence& sequence, Index bones, const D
 Decomposition decomposeWithin(const VertexSequence& sequence, const DecompositionOptions& options, Progress& progress) {
   Index low = 1;
   Decomposition best = decomposeWith(sequence, 1, options, progress);
-  while (best.error > options.tolerance && low < kMostBones) {
+  while (best.error > options.tolerance && low < kMaxBones) {
     Decomposition more = decomposeWith(sequence, 2 * low, options, progress);
     const bool isWorth = more.error <= kWorthMore * best.error;
     if (!isWorth) return best;
@@ -172,13 +173,13 @@ Decomposition decomposeWithin(const VertexSequence& sequence, const Decompositio
 }
 
 void checkOptions(const DecompositionOptions& options) {
-  if (options.bones && (*options.bones < 1 || *options.bones > kMostBones)) {
-    throw Error(ErrorCode::kBadArgument, fmt::format("a mesh can be given 1 to {} bones", kMostBones), {},
-                fmt::format("choose `bones` 1 to {}", kMostBones));
+  if (options.bones && (*options.bones < 1 || *options.bones > kMaxBones)) {
+    throw Error(ErrorCode::kBadArgument, fmt::format("a mesh can be given 1 to {} bones", kMaxBones), {},
+                fmt::format("choose `bones` 1 to {}", kMaxBones));
   }
-  if (options.maxInfluences < 1 || options.maxInfluences > kMostInfluences) {
-    throw Error(ErrorCode::kBadArgument, fmt::format("a vertex can keep 1 to {} influences", kMostInfluences), {},
-                fmt::format("choose `max-influences` 1 to {}", kMostInfluences));
+  if (options.maxInfluences < 1 || options.maxInfluences > kMaxInfluences) {
+    throw Error(ErrorCode::kBadArgument, fmt::format("a vertex can keep 1 to {} influences", kMaxInfluences), {},
+                fmt::format("choose `max-influences` 1 to {}", kMaxInfluences));
   }
   if (options.iterations < 1) throw Error(ErrorCode::kBadArgument, "a decomposition takes an iteration at least");
   if (!(options.tolerance >= 0) || !std::isfinite(options.tolerance)) {

@@ -25,7 +25,7 @@ struct Decomposition {
   double error = 0;     // root mean square over points and frames, of the diagonal of the rest pose's box
 };
 
-inline constexpr Index kMostBones = 512;
+inline constexpr Index kMaxBones = 512;
 
 // Smooth skinning decomposition with rigid bones (Le, Deng 2012): clusters of rigid motion (motionClusters), then
 // weights (fitWeights) and motions (fitMotions) in turn; a bone that came to nearly nothing is reseeded where the error

@@ -126,9 +126,9 @@ TEST(SkinDecomposition, FindsTheJointsOfHingedBoxes) {
   std::vector<double> along;
   for (Index j = 1; j < 3; ++j) {
     EXPECT_EQ(bones.skeleton.joints[j].parent, std::optional<Index>(0));
-    const Vec3 place = restGlobals(bones.skeleton)[j].translation();
+    const Vec3 position = restGlobals(bones.skeleton)[j].translation();
     const Vec3& joint = bones.boneOf[j] == result.weights.jointsOf(0)[0] ? known.joints[0] : known.joints[1];
-    EXPECT_LT((place - joint).norm(), 0.005) << place.transpose();
+    EXPECT_LT((position - joint).norm(), 0.005) << position.transpose();
   }
 }
 
@@ -194,9 +194,9 @@ TEST(SkinDecomposition, UnitsAndPlaceDoNotMatter) {
       EXPECT_LT((expected - there.motions.of(b)[f]).leftCols<3>().norm(), 0.01);
       expected.col(3) *= 100;
       for (const Index v : {0u, 125u, 251u}) {
-        const Vec3 place = 100 * known.rest[v].cast<double>();
-        const Vec3 image = there.motions.of(b)[f] * Vec3(place + offset).homogeneous();
-        const Vec3 apart = expected * place.homogeneous() - image;
+        const Vec3 position = 100 * known.rest[v].cast<double>();
+        const Vec3 image = there.motions.of(b)[f] * Vec3(position + offset).homogeneous();
+        const Vec3 apart = expected * position.homogeneous() - image;
         EXPECT_LT(apart.norm(), 0.002 * 100 * diagonalOf(known)) << b << " " << f;
       }
     }
@@ -259,9 +259,9 @@ TEST(SkinDecomposition, RefusesOptionsOutOfRange) {
     EXPECT_EQ(codeOf(sequence, options), ErrorCode::kBadArgument);
   };
   refuses([](DecompositionOptions& options) { options.maxInfluences = 0; });
-  refuses([](DecompositionOptions& options) { options.maxInfluences = kMostInfluences + 1; });
+  refuses([](DecompositionOptions& options) { options.maxInfluences = kMaxInfluences + 1; });
   refuses([](DecompositionOptions& options) { options.bones = 0; });
-  refuses([](DecompositionOptions& options) { options.bones = kMostBones + 1; });
+  refuses([](DecompositionOptions& options) { options.bones = kMaxBones + 1; });
   refuses([](DecompositionOptions& options) { options.iterations = 0; });
   refuses([](DecompositionOptions& options) { options.tolerance = -1; });
   refuses([](DecompositionOptions& options) { options.tolerance = std::numeric_limits<double>::quiet_NaN(); });
@@ -304,10 +304,10 @@ TEST(SkinDecomposition, CanBeCancelled) {
   decomposeSkin(bentTube().sequence(), options, counting);
   ASSERT_GT(updates, 3);
   for (const int last : {0, 1, updates / 2, updates - 1}) {
-    int told = 0;
+    int reported = 0;
     Progress progress;
     Progress cancelling([&](std::string_view, double) {
-      if (++told == last) cancelling.cancel();
+      if (++reported == last) cancelling.cancel();
     });
     Progress& heard = last == 0 ? progress : cancelling;
     if (last == 0) progress.cancel();
@@ -317,7 +317,7 @@ TEST(SkinDecomposition, CanBeCancelled) {
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ErrorCode::kCancelled);
     }
-    EXPECT_EQ(told, last);
+    EXPECT_EQ(reported, last);
   }
 }
 
@@ -334,7 +334,7 @@ TEST(BoneWeights, TakeMoreInfluencesThanThereAreBones) {
     EXPECT_EQ(fitted.weights.jointsOf(v)[0], 0u);
     EXPECT_EQ(fitted.weights.weightsOf(v)[0], 1.0f);
   }
-  EXPECT_THROW(fitWeights(sequence, one, kMostInfluences + 1, {}), Error);
+  EXPECT_THROW(fitWeights(sequence, one, kMaxInfluences + 1, {}), Error);
   EXPECT_THROW(fitWeights(sequence, one, 0, {}), Error);
 }
 
@@ -352,7 +352,7 @@ TEST(BoneMotions, CompactedKeepTheirOrder) {
 }
 
 TEST(VertexSequence, RefusesMoreThanItHolds) {
-  EXPECT_NO_THROW(VertexSequence::checkSize(3, VertexSequence::kMostFrames));
+  EXPECT_NO_THROW(VertexSequence::checkSize(3, VertexSequence::kMaxFrames));
   EXPECT_THROW(VertexSequence::checkSize(3, 6.7e8), Error);
   EXPECT_THROW(VertexSequence::checkSize(1, std::numeric_limits<double>::infinity()), Error);
   EXPECT_THROW(VertexSequence::checkSize(1, std::numeric_limits<double>::quiet_NaN()), Error);
@@ -382,8 +382,8 @@ TEST(BoneSkeleton, TheClipMovesPointsAsTheBonesDo) {
     sampleClip(clip, f / 10.0, pose);
     const std::vector<Affine> moved = skinTransforms(bones.skeleton, pose);
     for (Index v = 0; v < known.rest.size(); ++v) {
-      const Vec3 place = moved[bones.weights.jointsOf(v)[0]] * known.rest[v].cast<double>();
-      EXPECT_LT((place - known.sequence().at(v, f + 2).cast<double>()).norm(), 1e-3);
+      const Vec3 position = moved[bones.weights.jointsOf(v)[0]] * known.rest[v].cast<double>();
+      EXPECT_LT((position - known.sequence().at(v, f + 2).cast<double>()).norm(), 1e-3);
     }
   }
 }

@@ -10,7 +10,7 @@ namespace limber {
 
 void VertexSequence::checkSize(double pointCount, double frameCount) {
   const double stored = kLanes * std::ceil(pointCount / kLanes) * frameCount;
-  if (frameCount <= kMostFrames && stored <= kMostPositions) return;
+  if (frameCount <= kMaxFrames && stored <= kMaxPositions) return;
   throw Error(ErrorCode::kLimit,
               fmt::format("{:.0f} frames of {:.0f} vertices are too many to be held in memory", frameCount, pointCount),
               {}, "give fewer frames: one clip (--clip), or fewer a second (--fps)");

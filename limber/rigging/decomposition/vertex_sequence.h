@@ -17,8 +17,8 @@ class VertexSequence {
   static constexpr Index kLanes = 8;
   static constexpr std::size_t kFrameSize = 3 * kLanes;  // floats of one block in one frame: x of eight points, y, z
 
-  static constexpr double kMostFrames = 1 << 20;  // nine hours at 30 a second
-  static constexpr double kMostPositions = 2e9;   // stored, those that fill up the last block among them: 24 GB
+  static constexpr double kMaxFrames = 1 << 20;  // nine hours at 30 a second
+  static constexpr double kMaxPositions = 2e9;   // stored, those that fill up the last block among them: 24 GB
 
   // Throws Error kLimit beyond kMostFrames or kMostPositions. Numbers that may not be whole, as those of untrusted
   // files.

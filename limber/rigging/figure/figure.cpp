@@ -62,22 +62,22 @@ Vec3 Figure::socket(int limb) const {
                                  proportions::kShoulderDrop * chest.col(1));
 }
 
-FigureLimbPlaces Figure::places(int limb) const {
+LimbPositions Figure::positions(int limb) const {
   const FigureLimb& bones = limbs[limb];
-  FigureLimbPlaces places;
-  places.root = socket(limb);
-  if (!isLeg(limb)) places.root += stature * (chest * bones.shift);
-  places.middle = places.root + bones.upperScale * upperLength(limb) * stature * bones.upper;
-  places.ankle = places.middle + bones.lowerScale * lowerLength(limb) * stature * bones.lower;
-  places.tip = places.ankle + (isLeg(limb) ? proportions::kFoot : proportions::kHand) * stature * bones.end;
-  return places;
+  LimbPositions positions;
+  positions.root = socket(limb);
+  if (!isLeg(limb)) positions.root += stature * (chest * bones.shift);
+  positions.middle = positions.root + bones.upperScale * upperLength(limb) * stature * bones.upper;
+  positions.ankle = positions.middle + bones.lowerScale * lowerLength(limb) * stature * bones.lower;
+  positions.tip = positions.ankle + (isLeg(limb) ? proportions::kFoot : proportions::kHand) * stature * bones.end;
+  return positions;
 }
 
 Vec3 bendDirection(const Figure& figure, int limb, const Vec3& upper) {
   const Mat3& trunk = figure.trunkOf(limb);
   const Vec3 down = -trunk.col(1);
-  const Vec3 way = isLeg(limb) ? Vec3(-trunk.col(2)) : Vec3(trunk.col(2));
-  return shortestRotation(down, upper) * way;
+  const Vec3 displacement = isLeg(limb) ? Vec3(-trunk.col(2)) : Vec3(trunk.col(2));
+  return shortestRotation(down, upper) * displacement;
 }
 
 Vec3 toesForward(const Figure& figure, int limb) {

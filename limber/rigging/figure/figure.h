@@ -33,12 +33,12 @@ struct FigureLimb {
   double upperScale = 1, lowerScale = 1;  // lengths against the proportions'
 };
 
-struct FigureLimbPlaces {
+struct LimbPositions {
   Vec3 root, middle, ankle, tip;  // shoulder or hip, elbow or knee, wrist or ankle, the end of hand or foot
 };
 
 // Whether elbows or knees are nearer than `middle` to each other and wrists or ankles than `ankle`.
-inline bool alike(const FigureLimbPlaces& a, const FigureLimbPlaces& b, double middle, double ankle) {
+inline bool alike(const LimbPositions& a, const LimbPositions& b, double middle, double ankle) {
   return (a.middle - b.middle).norm() < middle && (a.ankle - b.ankle).norm() < ankle;
 }
 
@@ -61,7 +61,7 @@ struct Figure {
   const Mat3& trunkOf(int limb) const { return isLeg(limb) ? pelvis : chest; }
   // The shoulder (where it would be without its shift) or the hip.
   Vec3 socket(int limb) const;
-  FigureLimbPlaces places(int limb) const;
+  LimbPositions positions(int limb) const;
 };
 
 // Lengths of the upper and of the lower bone, in statures.

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "limber/core/text/numbers.h"
-#include "limber/rigging/figure/shared_place.h"
+#include "limber/rigging/figure/limb_overlap.h"
 #include "limber/rigging/figure/steady.h"
 
 namespace limber {
@@ -71,7 +71,7 @@ std::vector<Vec3> evenDirections(int count) {
   return directions;
 }
 
-Vec3 placeOf(const Figure& figure, const FigurePin& pin) {
+Vec3 positionOf(const Figure& figure, const FigurePin& pin) {
   switch (pin.joint) {
     case FigurePin::Joint::kHead:
       return figure.skullBase();
@@ -80,15 +80,15 @@ Vec3 placeOf(const Figure& figure, const FigurePin& pin) {
     case FigurePin::Joint::kHips:
       return figure.pelvisJoint();
     case FigurePin::Joint::kRoot:
-      return figure.places(pin.limb).root;
+      return figure.positions(pin.limb).root;
     case FigurePin::Joint::kMiddle:
-      return figure.places(pin.limb).middle;
+      return figure.positions(pin.limb).middle;
     case FigurePin::Joint::kAnkle:
-      return figure.places(pin.limb).ankle;
+      return figure.positions(pin.limb).ankle;
     case FigurePin::Joint::kTip:
       break;
   }
-  return figure.places(pin.limb).tip;
+  return figure.positions(pin.limb).tip;
 }
 
 FigureMatch::FigureMatch(const SignedDistance& distance, std::vector<FigurePin> pins,
@@ -106,7 +106,7 @@ FigureMatch::FigureMatch(const SignedDistance& distance, std::vector<FigurePin> 
 }
 
 double FigureMatch::costOf(const FigurePin& pin, const Figure& figure) const {
-  const double off = (placeOf(figure, pin) - pin.place).norm() / (kFarFromPin * figure.stature);
+  const double off = (positionOf(figure, pin) - pin.position).norm() / (kFarFromPin * figure.stature);
   return kPinCost * std::min(1.0, off * off);
 }
 
@@ -132,16 +132,16 @@ double FigureMatch::trunkPinCost(const Figure& figure) const {
 template <std::size_t N>
 std::array<float, N> FigureMatch::answers(const Vec3& middle, const Spokes<N>& spokes, Hidden hidden) const {
   constexpr float kIn = static_cast<float>(kInner), kOut = static_cast<float>(kOuter);
-  std::array<std::array<float, 2 * N>, 3> places;
+  std::array<std::array<float, 2 * N>, 3> positions;
   for (int axis = 0; axis < 3; ++axis) {
     const float from = static_cast<float>(middle[axis]);
     for (std::size_t i = 0; i < N; ++i) {
-      places[axis][i] = from + kIn * spokes.ways[axis][i];
-      places[axis][N + i] = from + kOut * spokes.ways[axis][i];
+      positions[axis][i] = from + kIn * spokes.directions[axis][i];
+      positions[axis][N + i] = from + kOut * spokes.directions[axis][i];
     }
   }
-  const std::array<float, 2 * N> distances = distance_.atEach(places);
-  const auto share = [](float x) {
+  const std::array<float, 2 * N> distances = distance_.atEach(positions);
+  const auto fractionOf = [](float x) {
     x = x > 0 ? x : 0;
     return x < 1 ? x : 1;
   };
@@ -149,7 +149,8 @@ std::array<float, N> FigureMatch::answers(const Vec3& middle, const Spokes<N>& s
   std::array<float, N> answers;
   for (std::size_t i = 0; i < N; ++i) {
     const float perSoft = 1 / (2 * static_cast<float>(kSoft) * spokes.radii[i]);
-    const float inside = share(0.5f - distances[i] * perSoft), outside = share(0.5f + distances[N + i] * perSoft);
+    const float inside = fractionOf(0.5f - distances[i] * perSoft),
+                outside = fractionOf(0.5f + distances[N + i] * perSoft);
     answers[i] = inside * outside - (1 - inside) - cost * inside * (1 - outside);
   }
   return answers;
@@ -181,8 +182,8 @@ FigureMatch::Circle FigureMatch::circleRound(const Vec3& axis) const {
 double FigureMatch::ring(const Vec3& middle, const Circle& circle, double radius) const {
   Spokes<kRing> spokes = {circle, {}};
   const float size = static_cast<float>(radius);
-  for (std::array<float, kRing>& ways : spokes.ways) {
-    for (float& way : ways) way *= size;
+  for (std::array<float, kRing>& directions : spokes.directions) {
+    for (float& coordinate : directions) coordinate *= size;
   }
   spokes.radii.fill(size);
   return meanAnswer(middle, spokes, Hidden::kCosts);
@@ -233,12 +234,12 @@ double FigureMatch::chest(const Figure& figure) const {
   }
   double shoulders = 0;
   for (const int limb : {0, 1}) {
-    const Vec3 out = sideOf(limb) * figure.chest.col(0), place = figure.socket(limb);
+    const Vec3 out = sideOf(limb) * figure.chest.col(0), position = figure.socket(limb);
     const double radius = kShoulderRadius * size;
-    const Vec3 ways[] = {out, (out + up).normalized(), up, front, -front};
+    const Vec3 directions[] = {out, (out + up).normalized(), up, front, -front};
     Spokes<5> spokes;
-    for (std::size_t i = 0; i < 5; ++i) spokes.set(i, radius * ways[i], radius);
-    const std::array<float, 5> at = answers(place, spokes, Hidden::kFree);
+    for (std::size_t i = 0; i < 5; ++i) spokes.set(i, radius * directions[i], radius);
+    const std::array<float, 5> at = answers(position, spokes, Hidden::kFree);
     shoulders += at[0] + at[1] + at[2] + 0.5 * (at[3] + at[4]);
   }
   return sections / 3 + kShoulderWeight * shoulders + kNeckWeight * neck(figure);
@@ -259,9 +260,9 @@ double FigureMatch::trunk(const Figure& figure) const {
 
 double FigureMatch::upper(const Figure& figure, int limb) const {
   const LimbShape& shape = shapeOf(limb);
-  const FigureLimbPlaces places = figure.places(limb);
+  const LimbPositions positions = figure.positions(limb);
   const double size = figure.stature;
-  return bone(places.root, figure.limbs[limb].upper, figure.limbs[limb].upperScale * upperLength(limb) * size,
+  return bone(positions.root, figure.limbs[limb].upper, figure.limbs[limb].upperScale * upperLength(limb) * size,
               {shape.upperRadii[0] * size, shape.upperRadii[1] * size}, shape.upperPart, kUpperRings);
 }
 
@@ -278,51 +279,52 @@ double FigureMatch::foot(const Figure& figure, const Vec3& ankle, const Vec3& di
   return 0.7 * along + 0.3 * answer(ankle + 0.12 * size * direction, direction, 0.02 * size);
 }
 
-double FigureMatch::insideTrunk(const Figure& figure, const Vec3& place) const {
+double FigureMatch::insideTrunk(const Figure& figure, const Vec3& position) const {
   const double size = figure.stature;
   const auto ellipsoid = [&](const Vec3& middle, const Mat3& axes) {
-    return (axes.transpose() * (place - middle)).cwiseQuotient(size * Vec3(0.085, 0.07, 0.058)).norm();
+    return (axes.transpose() * (position - middle)).cwiseQuotient(size * Vec3(0.085, 0.07, 0.058)).norm();
   };
   const Vec3 neck = figure.neckBase(), up = figure.chest.col(1);
-  double nearest = (place - figure.head).norm() / (0.98 * figure.headRadius);
+  double nearest = (position - figure.head).norm() / (0.98 * figure.headRadius);
   nearest = std::min(nearest, ellipsoid(neck - 0.06 * size * up, figure.chest));
   nearest = std::min(nearest, ellipsoid(neck - 0.14 * size * up, figure.chest));
   nearest = std::min(nearest, ellipsoid(figure.waist() - 0.1 * size * figure.pelvis.col(1), figure.pelvis));
   return std::clamp(1.15 - nearest, 0.0, 1.0);
 }
 
-double FigureMatch::inGround(const Figure& figure, const Vec3& place) const {
+double FigureMatch::inGround(const Figure& figure, const Vec3& position) const {
   if (!ground_) return 0;
-  return std::clamp((ground_->height - place.dot(ground_->up)) / (kGroundDepth * figure.stature), 0.0, 1.0);
+  return std::clamp((ground_->height - position.dot(ground_->up)) / (kGroundDepth * figure.stature), 0.0, 1.0);
 }
 
 double FigureMatch::limb(const Figure& figure, int limb) const {
   const LimbShape& shape = shapeOf(limb);
   const FigureLimb& bones = figure.limbs[limb];
-  const FigureLimbPlaces places = figure.places(limb);
+  const LimbPositions positions = figure.positions(limb);
   const double size = figure.stature;
   double end = 0;
   if (isLeg(limb)) {
-    end = foot(figure, places.ankle, bones.end);
+    end = foot(figure, positions.ankle, bones.end);
   } else {
-    end = 0.7 * ring(places.ankle + 0.04 * size * bones.end, circleRound(bones.end), 0.02 * size) +
-          0.3 * std::max(0.0, answer(places.ankle + 0.06 * size * bones.end, bones.end, 0.03 * size));
+    end = 0.7 * ring(positions.ankle + 0.04 * size * bones.end, circleRound(bones.end), 0.02 * size) +
+          0.3 * std::max(0.0, answer(positions.ankle + 0.06 * size * bones.end, bones.end, 0.03 * size));
   }
   const double lowerBone = bones.lowerScale * lowerLength(limb) * size;
   double sum = shape.weights.upper * upper(figure, limb) +
-               shape.weights.lower * lower(limb, places.middle, bones.lower, lowerBone, size) + shape.weights.end * end;
-  double within = insideTrunk(figure, places.tip), sunk = inGround(figure, places.tip);
+               shape.weights.lower * lower(limb, positions.middle, bones.lower, lowerBone, size) +
+               shape.weights.end * end;
+  double within = insideTrunk(figure, positions.tip), sunk = inGround(figure, positions.tip);
   for (const double at : {0.6, 1.0}) {
-    const Vec3 place = places.root + at * (places.middle - places.root);
-    within += insideTrunk(figure, place);
-    sunk += inGround(figure, place);
+    const Vec3 position = positions.root + at * (positions.middle - positions.root);
+    within += insideTrunk(figure, position);
+    sunk += inGround(figure, position);
   }
   for (const double at : {0.25, 0.5, 0.75, 1.0}) {
-    const Vec3 place = places.middle + at * (places.ankle - places.middle);
-    within += insideTrunk(figure, place);
-    sunk += inGround(figure, place);
+    const Vec3 position = positions.middle + at * (positions.ankle - positions.middle);
+    within += insideTrunk(figure, position);
+    sunk += inGround(figure, position);
   }
-  const double shallow = 1 + distance_.at(places.root) / (kRootDepth * size);
+  const double shallow = 1 + distance_.at(positions.root) / (kRootDepth * size);
   sum -= kInTrunk * within + kInGround * sunk + kShallowRoot * std::clamp(shallow, 0.0, 2.0) + strain(figure, limb) +
          pinCost(figure, limb);
   if (isLeg(limb)) return sum;
@@ -353,7 +355,7 @@ void sumUp(MatchedFigure& matched) {
   matched.total = matched.trunk;
   for (const double limb : matched.limbs) matched.total += limb;
   for (int a = 0; a < kFigureLimbs; ++a) {
-    for (int b = a + 1; b < kFigureLimbs; ++b) matched.total -= sharingCost(sharedPlace(spaces[a], spaces[b]));
+    for (int b = a + 1; b < kFigureLimbs; ++b) matched.total -= sharingCost(limbOverlap(spaces[a], spaces[b]));
   }
 }
 

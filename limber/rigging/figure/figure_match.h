@@ -15,11 +15,11 @@ struct FigurePin {
   enum class Joint { kHead, kNeck, kHips, kRoot, kMiddle, kAnkle, kTip };
   Joint joint = Joint::kHead;
   int limb = 0;  // of the last four
-  Vec3 place = Vec3::Zero();
+  Vec3 position = Vec3::Zero();
 };
 
 // Where a figure has the joint of a pin.
-Vec3 placeOf(const Figure& figure, const FigurePin& pin);
+Vec3 positionOf(const Figure& figure, const FigurePin& pin);
 
 // Nobody's limbs lie below it.
 struct FigureGround {
@@ -52,9 +52,9 @@ class FigureMatch {
   double pinCost(const Figure& figure, int limb, bool upToMiddle = false) const;
 
   // How much of a place lies inside the trunk or head, 0 to 1.
-  double insideTrunk(const Figure& figure, const Vec3& place) const;
+  double insideTrunk(const Figure& figure, const Vec3& position) const;
   // How much of a place lies in the ground, 0 to 1.
-  double inGround(const Figure& figure, const Vec3& place) const;
+  double inGround(const Figure& figure, const Vec3& position) const;
 
  private:
   static constexpr std::size_t kRing = 8, kOval = 12, kBall = 32;  // points
@@ -62,11 +62,11 @@ class FigureMatch {
   // Ways from a place within a part to its surface, x, y and z apart, and how long they are.
   template <std::size_t N>
   struct Spokes {
-    std::array<std::array<float, N>, 3> ways;
+    std::array<std::array<float, N>, 3> directions;
     std::array<float, N> radii;
 
-    void set(std::size_t i, const Vec3& way, double radius) {
-      for (int axis = 0; axis < 3; ++axis) ways[axis][i] = static_cast<float>(way[axis]);
+    void set(std::size_t i, const Vec3& unit, double radius) {
+      for (int axis = 0; axis < 3; ++axis) directions[axis][i] = static_cast<float>(unit[axis]);
       radii[i] = static_cast<float>(radius);
     }
   };

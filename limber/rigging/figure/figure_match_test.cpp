@@ -48,15 +48,15 @@ TEST(FigureMatch, WhatSticksOutMatchesWorst) {
 
 TEST(FigureMatch, WhatIsHiddenIsBetterThanWhatSticksOutAndWorseThanWhatShows) {
   TriMesh inBlock = testing::figureBody(measured().figure);
-  const FigureLimbPlaces places = measured().figure.places(0);
-  testing::addCapsule(inBlock, places.root, places.tip, 0.1);
+  const LimbPositions positions = measured().figure.positions(0);
+  testing::addCapsule(inBlock, positions.root, positions.tip, 0.1);
   const BodyVolume body = measureBody(inBlock);
   const FigureMatch match(*body.distance);
-  const double hidden = match.lower(0, places.middle, measured().figure.limbs[0].lower, 0.145, 1);
-  const double shown = measured().match.lower(0, places.middle, measured().figure.limbs[0].lower, 0.145, 1);
+  const double hidden = match.lower(0, positions.middle, measured().figure.limbs[0].lower, 0.145, 1);
+  const double shown = measured().match.lower(0, positions.middle, measured().figure.limbs[0].lower, 0.145, 1);
   EXPECT_GT(shown, 0.7);
   EXPECT_NEAR(hidden, -0.35, 0.1);
-  const Vec3 beside = places.middle + Vec3(0.1, 0, 0);
+  const Vec3 beside = positions.middle + Vec3(0.1, 0, 0);
   EXPECT_EQ(measured().match.lower(0, beside, Vec3::UnitX(), 0.145, 1), -1);
 }
 
@@ -74,7 +74,7 @@ TEST(FigureMatch, StrainIsNoneAtEase) {
 TEST(FigureMatch, LimbsThatShareAPlaceCount) {
   Figure figure = testing::standingFigure();
   const MatchedFigure apart = matched(measured().match, figure);
-  figure.limbs[3].upper = (figure.places(2).middle - figure.socket(3)).normalized();
+  figure.limbs[3].upper = (figure.positions(2).middle - figure.socket(3)).normalized();
   MatchedFigure shared = apart;
   shared.figure = figure;
   sumUp(shared);
@@ -85,26 +85,26 @@ TEST(FigureMatch, PlacesInTheTrunkAreInside) {
   const Figure& figure = measured().figure;
   EXPECT_EQ(measured().match.insideTrunk(figure, figure.waist() + Vec3(0, 0.03, 0)), 1);
   EXPECT_EQ(measured().match.insideTrunk(figure, figure.head), 1);
-  EXPECT_EQ(measured().match.insideTrunk(figure, figure.places(0).ankle), 0);
+  EXPECT_EQ(measured().match.insideTrunk(figure, figure.positions(0).ankle), 0);
 }
 
 TEST(FigureMatch, LimbsInTheGroundMatchWorse) {
   const Figure& figure = measured().figure;
-  const FigureLimbPlaces places = figure.places(2);
+  const LimbPositions positions = figure.positions(2);
   const FigureMatch standing(*measured().body.distance);
-  EXPECT_EQ(standing.inGround(figure, places.tip), 0) << "there is none";
-  const FigureMatch sunk(*measured().body.distance, {}, FigureGround{Vec3::UnitY(), places.ankle.y() + 0.1});
-  EXPECT_EQ(sunk.inGround(figure, places.ankle), 1);
+  EXPECT_EQ(standing.inGround(figure, positions.tip), 0) << "there is none";
+  const FigureMatch sunk(*measured().body.distance, {}, FigureGround{Vec3::UnitY(), positions.ankle.y() + 0.1});
+  EXPECT_EQ(sunk.inGround(figure, positions.ankle), 1);
   EXPECT_EQ(sunk.inGround(figure, figure.head), 0);
   EXPECT_LT(sunk.limb(figure, 2), standing.limb(figure, 2) - 0.2);
 }
 
 TEST(FigureMatch, FiguresFarFromTheirPinsMatchWorse) {
   const Figure& figure = measured().figure;
-  const FigureLimbPlaces places = figure.places(0);
-  const FigureMatch at(*measured().body.distance, {{FigurePin::Joint::kAnkle, 0, places.ankle}});
+  const LimbPositions positions = figure.positions(0);
+  const FigureMatch at(*measured().body.distance, {{FigurePin::Joint::kAnkle, 0, positions.ankle}});
   EXPECT_EQ(at.pinCost(figure, 0), 0);
-  const FigureMatch off(*measured().body.distance, {{FigurePin::Joint::kAnkle, 0, places.ankle + Vec3(0.1, 0, 0)},
+  const FigureMatch off(*measured().body.distance, {{FigurePin::Joint::kAnkle, 0, positions.ankle + Vec3(0.1, 0, 0)},
                                                     {FigurePin::Joint::kHead, 0, Vec3(0, 2, 0)}});
   EXPECT_GT(off.pinCost(figure, 0), 0.3);
   EXPECT_EQ(off.pinCost(figure, 0, true), 0) << "up to the elbow";

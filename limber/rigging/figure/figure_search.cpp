@@ -17,7 +17,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kLeastHead = 0.45;  // match of a head below which there is none
+constexpr double kMinHead = 0.45;    // match of a head below which there is none
 constexpr std::size_t kChests = 80;  // that hang from a head of one stature
 constexpr std::size_t kTrunks = 800, kKept = 24, kImproved = 8;
 constexpr int kRounds = 2;  // of limbs found anew and improved
@@ -34,8 +34,8 @@ constexpr double kLikeStature = 0.125;  // ratio of statures that one finder of 
 constexpr double kAlike = 0.08;         // statures between elbows, knees, wrists and ankles
 constexpr double kAlikeMiddle = 0.04, kAlikeAnkle = 0.05;
 
-constexpr double kMostGain = 0.15;  // of a limb by one step of the trunk
-constexpr double kNobody = -1e9;    // total of a trunk without limbs
+constexpr double kMaxGain = 0.15;  // of a limb by one step of the trunk
+constexpr double kNobody = -1e9;   // total of a trunk without limbs
 
 using Candidates = std::vector<LimbFinder::Candidate>;
 
@@ -50,7 +50,7 @@ class Search {
 
   std::optional<MatchedFigure> run() {
     std::vector<HeadBall> heads = findHeads(body_, match_, options_.up);
-    std::erase_if(heads, [](const HeadBall& head) { return head.match < kLeastHead; });
+    std::erase_if(heads, [](const HeadBall& head) { return head.match < kMinHead; });
     figures_ = trunks(heads);
     if (figures_.empty()) return {};
     progress_.update(0.1);
@@ -186,14 +186,14 @@ class Search {
         }
       }
     }
-    const auto places = [&](const LimbFinder::Candidate& candidate) {
+    const auto positionsOf = [&](const LimbFinder::Candidate& candidate) {
       trial.limbs[limb] = candidate.bones;
-      return trial.places(limb);
+      return trial.positions(limb);
     };
     candidates = bestApart(
         std::move(candidates), kTriedLimbs, [](const LimbFinder::Candidate& candidate) { return candidate.match; },
         [&](const LimbFinder::Candidate& a, const LimbFinder::Candidate& b) {
-          return alike(places(a), places(b), kAlikeMiddle * figure.stature, kAlikeAnkle * figure.stature);
+          return alike(positionsOf(a), positionsOf(b), kAlikeMiddle * figure.stature, kAlikeAnkle * figure.stature);
         });
   }
 
@@ -252,10 +252,10 @@ class Search {
   bool trunkImproves(MatchedFigure& trial, const MatchedFigure& figure) const {
     double most = match_.trunk(trial.figure);
     trial.trunk = most;
-    for (const double limb : figure.limbs) most += limb + kMostGain;
+    for (const double limb : figure.limbs) most += limb + kMaxGain;
     for (int limb = 0; limb < kFigureLimbs && most > figure.total; ++limb) {
       trial.limbs[limb] = match_.limb(trial.figure, limb);
-      most += trial.limbs[limb] - figure.limbs[limb] - kMostGain;
+      most += trial.limbs[limb] - figure.limbs[limb] - kMaxGain;
     }
     return most > figure.total && sumImproves(trial, figure);
   }
@@ -276,7 +276,7 @@ class Search {
           const double near = kAlike * b.figure.stature;
           bool every = true;
           for (int limb = 0; limb < kFigureLimbs; ++limb) {
-            every = every && alike(a.figure.places(limb), b.figure.places(limb), near, near);
+            every = every && alike(a.figure.positions(limb), b.figure.positions(limb), near, near);
           }
           return every;
         });

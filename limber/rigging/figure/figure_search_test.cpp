@@ -14,7 +14,7 @@ void expectLike(const Figure& found, const Figure& truth) {
   EXPECT_LT((found.head - truth.head).norm(), 0.03);
   EXPECT_LT((found.hips() - truth.hips()).norm(), 0.06);
   for (int limb = 0; limb < kFigureLimbs; ++limb) {
-    const FigureLimbPlaces a = found.places(limb), b = truth.places(limb);
+    const LimbPositions a = found.positions(limb), b = truth.positions(limb);
     EXPECT_LT((a.root - b.root).norm(), 0.07) << limb;
     EXPECT_LT((a.middle - b.middle).norm(), 0.07) << limb;
     EXPECT_LT((a.ankle - b.ankle).norm(), 0.07) << limb;
@@ -45,7 +45,7 @@ TEST(FigureSearch, FeetTellTheFrontOfOneWhoStands) {
   const std::optional<MatchedFigure> found = find(body);
   ASSERT_TRUE(found);
   EXPECT_GT(found->figure.pelvis.col(2).z(), 0.8);
-  EXPECT_GT(found->figure.places(0).ankle.x(), 0) << "its left is at the left";
+  EXPECT_GT(found->figure.positions(0).ankle.x(), 0) << "its left is at the left";
 }
 
 TEST(FigureSearch, GivesTheSameWithAnyNumberOfThreads) {
@@ -56,7 +56,7 @@ TEST(FigureSearch, GivesTheSameWithAnyNumberOfThreads) {
   setThreadCount(0);
   ASSERT_TRUE(one && three);
   EXPECT_EQ(one->total, three->total);
-  EXPECT_EQ(one->figure.places(0).tip, three->figure.places(0).tip);
+  EXPECT_EQ(one->figure.positions(0).tip, three->figure.positions(0).tip);
 }
 
 TEST(FigureSearch, KeepsToTheFrontThatIsGiven) {
@@ -71,12 +71,12 @@ TEST(FigureSearch, KeepsToTheFrontThatIsGiven) {
 TEST(FigureSearch, ComesToItsPins) {
   const Figure truth = testing::crouchingFigure();
   // The left hand, which points forward, shall rest beside the knee.
-  const Vec3 place = truth.places(2).middle + Vec3(0.06, 0.03, 0);
+  const Vec3 position = truth.positions(2).middle + Vec3(0.06, 0.03, 0);
   FigureSearch search;
-  search.pins = {{FigurePin::Joint::kAnkle, 0, place}};
+  search.pins = {{FigurePin::Joint::kAnkle, 0, position}};
   const std::optional<MatchedFigure> found = find(statue(), search);
   ASSERT_TRUE(found);
-  EXPECT_LT((found->figure.places(0).ankle - place).norm(), 0.1);
+  EXPECT_LT((found->figure.positions(0).ankle - position).norm(), 0.1);
 }
 
 TEST(FigureSearch, MayBeCancelled) {

@@ -9,9 +9,9 @@ namespace limber {
 
 namespace {
 
-constexpr double kMostScale = 1.4, kLeastScale = 0.7, kMostShift = 0.05;  // of bones; statures of shoulders
-constexpr double kMostNeck = 0.09, kLeastNeck = 0.01;                     // statures
-constexpr double kSmallest = 0.15;                                        // step that is worth to be tried
+constexpr double kMaxScale = 1.4, kMinScale = 0.7, kMaxShift = 0.05;  // of bones; statures of shoulders
+constexpr double kMaxNeck = 0.09, kMinNeck = 0.01;                    // statures
+constexpr double kSmallest = 0.15;                                    // step that is worth to be tried
 
 Vec3 randomStep(Random& random, double size) {
   const double x = random.normal(), y = random.normal(), z = random.normal();
@@ -31,13 +31,13 @@ void turnLimb(FigureLimb& bones, const Mat3& turn) {
 // Brings elbow or knee to `middle` and wrist or ankle to `ankle`, as far as bones can be as long.
 void reach(Figure& figure, int limb, const Vec3& middle, const Vec3& ankle) {
   FigureLimb& bones = figure.limbs[limb];
-  const auto scaleFor = [&](const Vec3& way, double length) {
-    return std::clamp(way.norm() / (length * figure.stature), kLeastScale, kMostScale);
+  const auto scaleFor = [&](const Vec3& displacement, double length) {
+    return std::clamp(displacement.norm() / (length * figure.stature), kMinScale, kMaxScale);
   };
-  const Vec3 upper = middle - figure.places(limb).root;
+  const Vec3 upper = middle - figure.positions(limb).root;
   bones.upper = upper.normalized();
   bones.upperScale = scaleFor(upper, upperLength(limb));
-  const Vec3 lower = ankle - figure.places(limb).middle;
+  const Vec3 lower = ankle - figure.positions(limb).middle;
   bones.lower = lower.normalized();
   bones.lowerScale = scaleFor(lower, lowerLength(limb));
   if (!isLeg(limb)) bones.end = bones.lower;
@@ -56,7 +56,7 @@ void changeTrunk(Figure& figure, double size, Random& random) {
       figure.stature *= ratioFor(0.05 * size * random.normal());
       break;
     case 3:
-      figure.neckLength = std::clamp(figure.neckLength + 0.01 * size * random.normal(), kLeastNeck, kMostNeck);
+      figure.neckLength = std::clamp(figure.neckLength + 0.01 * size * random.normal(), kMinNeck, kMaxNeck);
       break;
     case 4:
       figure.neck = randomTurn(random, angle) * figure.neck;
@@ -99,15 +99,15 @@ void stepLimb(Figure& figure, int limb, double size, Random& random) {
       turnLimb(bones, randomTurn(random, angle));
       break;
     case 3: {  // elbow or knee moves, wrist or ankle stays about where it is
-      const FigureLimbPlaces places = figure.places(limb);
-      const Vec3 middle = places.middle + randomStep(random, 0.03 * size * figure.stature);
-      bones.upper = (middle - places.root).normalized();
-      bones.lower = (places.ankle - middle).normalized();
+      const LimbPositions positions = figure.positions(limb);
+      const Vec3 middle = positions.middle + randomStep(random, 0.03 * size * figure.stature);
+      bones.upper = (middle - positions.root).normalized();
+      bones.lower = (positions.ankle - middle).normalized();
       break;
     }
     case 4: {
       double& scale = random.below(2) == 0 ? bones.upperScale : bones.lowerScale;
-      scale = std::clamp(scale * ratioFor(0.06 * size * random.normal()), kLeastScale, kMostScale);
+      scale = std::clamp(scale * ratioFor(0.06 * size * random.normal()), kMinScale, kMaxScale);
       break;
     }
     default:
@@ -115,8 +115,8 @@ void stepLimb(Figure& figure, int limb, double size, Random& random) {
         bones.end = randomTurn(random, 1.5 * angle) * bones.end;
       } else {
         const Vec3 shift = bones.shift + randomStep(random, 0.012 * size);
-        if (shift.norm() >= kMostShift) break;
-        const FigureLimbPlaces before = figure.places(limb);
+        if (shift.norm() >= kMaxShift) break;
+        const LimbPositions before = figure.positions(limb);
         bones.shift = shift;
         if (random.below(2) == 0) reach(figure, limb, before.middle, before.ankle);
       }
@@ -126,8 +126,8 @@ void stepLimb(Figure& figure, int limb, double size, Random& random) {
 
 void stepTrunk(Figure& figure, double size, Random& random) {
   const bool limbsStay = random.below(10) < 7;
-  std::array<FigureLimbPlaces, kFigureLimbs> before;
-  for (int limb = 0; limb < kFigureLimbs; ++limb) before[limb] = figure.places(limb);
+  std::array<LimbPositions, kFigureLimbs> before;
+  for (int limb = 0; limb < kFigureLimbs; ++limb) before[limb] = figure.positions(limb);
   changeTrunk(figure, size, random);
   for (int limb = 0; limbsStay && limb < kFigureLimbs; ++limb) {
     reach(figure, limb, before[limb].middle, before[limb].ankle);
@@ -146,8 +146,8 @@ Figure turnedAround(Figure figure) {
     bones.shift = Vec3(-bones.shift.x(), bones.shift.y(), -bones.shift.z());
     if (isLeg(limb)) bones.end = toesForward(figure, limb).normalized();
     if (limbAllowed(figure, limb)) continue;
-    const FigureLimbPlaces places = figure.places(limb);
-    bones.upper = bones.lower = (places.ankle - places.root).normalized();
+    const LimbPositions positions = figure.positions(limb);
+    bones.upper = bones.lower = (positions.ankle - positions.root).normalized();
     bones.end = isLeg(limb) ? toesForward(figure, limb).normalized() : bones.lower;
   }
   return figure;

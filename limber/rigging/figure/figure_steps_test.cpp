@@ -18,7 +18,7 @@ void expectSound(const Figure& figure) {
     EXPECT_NEAR(axes.determinant(), 1, 1e-9);
   }
   for (const FigureLimb& bones : figure.limbs) {
-    for (const Vec3& way : {bones.upper, bones.lower, bones.end}) EXPECT_NEAR(way.norm(), 1, 1e-9);
+    for (const Vec3& displacement : {bones.upper, bones.lower, bones.end}) EXPECT_NEAR(displacement.norm(), 1, 1e-9);
     EXPECT_GT(bones.upperScale, 0.5);
     EXPECT_LT(bones.upperScale, 1.6);
     EXPECT_LT(bones.shift.norm(), 0.06);
@@ -44,8 +44,8 @@ TEST(FigureSteps, OfALimbLeaveTheOthers) {
   Figure figure = before;
   Random random(2);
   for (int step = 0; step < 50; ++step) stepLimb(figure, 0, 1, random);
-  EXPECT_GT((figure.places(0).ankle - before.places(0).ankle).norm(), 1e-3);
-  for (int limb = 1; limb < kFigureLimbs; ++limb) EXPECT_EQ(figure.places(limb).tip, before.places(limb).tip);
+  EXPECT_GT((figure.positions(0).ankle - before.positions(0).ankle).norm(), 1e-3);
+  for (int limb = 1; limb < kFigureLimbs; ++limb) EXPECT_EQ(figure.positions(limb).tip, before.positions(limb).tip);
 }
 
 TEST(FigureSteps, OfTheTrunkMostlyLeaveHandsAndFeetWhereTheyAre) {
@@ -57,8 +57,8 @@ TEST(FigureSteps, OfTheTrunkMostlyLeaveHandsAndFeetWhereTheyAre) {
     stepTrunk(figure, 0.3, random);
     double moved = 0;
     for (int limb = 0; limb < kFigureLimbs; ++limb) {
-      moved = std::max(moved, (figure.places(limb).middle - before.places(limb).middle).norm());
-      moved = std::max(moved, (figure.places(limb).ankle - before.places(limb).ankle).norm());
+      moved = std::max(moved, (figure.positions(limb).middle - before.positions(limb).middle).norm());
+      moved = std::max(moved, (figure.positions(limb).ankle - before.positions(limb).ankle).norm());
     }
     stayed += moved < 1e-9;
   }
@@ -83,9 +83,9 @@ TEST(FigureSteps, OneWhoTurnsAroundHasItsHandsWhereTheyWere) {
   const Figure before = testing::standingFigure(), after = turnedAround(before);
   expectSound(after);
   EXPECT_EQ(Vec3(after.pelvis.col(2)), -Vec3::UnitZ());
-  EXPECT_LT((after.places(0).ankle - before.places(1).ankle).norm(), 1e-9);
-  EXPECT_LT((after.places(3).ankle - before.places(2).ankle).norm(), 1e-9);
-  EXPECT_LT(after.places(2).tip.z(), 0) << "toes point where it looks";
+  EXPECT_LT((after.positions(0).ankle - before.positions(1).ankle).norm(), 1e-9);
+  EXPECT_LT((after.positions(3).ankle - before.positions(2).ankle).norm(), 1e-9);
+  EXPECT_LT(after.positions(2).tip.z(), 0) << "toes point where it looks";
   for (int limb = 0; limb < kFigureLimbs; ++limb) EXPECT_TRUE(limbAllowed(after, limb));
   Figure bent = before;
   bent.limbs[2].upper = Vec3(0.05, -1, 0.3).normalized();

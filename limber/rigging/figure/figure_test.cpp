@@ -11,13 +11,13 @@ TEST(Figure, StandsAsHighAsItSays) {
   EXPECT_NEAR(figure.head.y() + figure.headRadius, 1, 0.02);
   EXPECT_NEAR(figure.hips().y(), 0.53, 0.03) << "of the greater trochanter, after Drillis and Contini";
   EXPECT_NEAR(figure.socket(0).y(), 0.818, 0.03) << "of the shoulder";
-  EXPECT_NEAR(figure.places(2).ankle.y(), 0.039, 0.03) << "of the ankle";
+  EXPECT_NEAR(figure.positions(2).ankle.y(), 0.039, 0.03) << "of the ankle";
 }
 
 TEST(Figure, HasItsLeftAtTheLeft) {
   const Figure figure = testing::standingFigure();
   for (const int limb : {0, 2}) {
-    const FigureLimbPlaces left = figure.places(limb), right = figure.places(limb + 1);
+    const LimbPositions left = figure.positions(limb), right = figure.positions(limb + 1);
     EXPECT_GT(left.root.x(), 0);
     EXPECT_LT((left.tip.cwiseProduct(Vec3(-1, 1, 1)) - right.tip).norm(), 1e-12);
   }
@@ -25,10 +25,10 @@ TEST(Figure, HasItsLeftAtTheLeft) {
 
 TEST(Figure, ShouldersGiveWayAndBonesStretch) {
   Figure figure = testing::standingFigure();
-  const FigureLimbPlaces before = figure.places(0);
+  const LimbPositions before = figure.positions(0);
   figure.limbs[0].shift = {0.01, 0, 0};
   figure.limbs[0].upperScale = 1.1;
-  const FigureLimbPlaces after = figure.places(0);
+  const LimbPositions after = figure.positions(0);
   EXPECT_LT((after.root - before.root - Vec3(0.01, 0, 0)).norm(), 1e-12);
   EXPECT_NEAR((after.middle - after.root).norm(), 1.1 * proportions::kUpperArm, 1e-12);
 }

@@ -1,6 +1,6 @@
 #include "limber/rigging/figure/limb_choice.h"
 
-#include "limber/rigging/figure/shared_place.h"
+#include "limber/rigging/figure/limb_overlap.h"
 
 namespace limber {
 
@@ -25,7 +25,7 @@ class Matches {
     for (int a = 0; a < kFigureLimbs; ++a) {
       for (int b = a + 1; b < kFigureLimbs; ++b) {
         for (const LimbSpace& first : spaces[a]) {
-          for (const LimbSpace& second : spaces[b]) costs_[a][b].push_back(sharingCost(sharedPlace(first, second)));
+          for (const LimbSpace& second : spaces[b]) costs_[a][b].push_back(sharingCost(limbOverlap(first, second)));
         }
       }
     }

@@ -19,7 +19,7 @@ TEST(LimbChoice, AvoidsLimbsInOnePlaceWhereThatIsWorthIt) {
   LimbCandidates candidates;
   for (int limb = 0; limb < kFigureLimbs; ++limb) candidates[limb] = {{figure.limbs[limb], 1}};
   FigureLimb crossed = figure.limbs[3];
-  crossed.upper = (figure.places(2).middle - figure.socket(3)).normalized();
+  crossed.upper = (figure.positions(2).middle - figure.socket(3)).normalized();
   candidates[3] = {{crossed, 1.1}, {figure.limbs[3], 1}};
   EXPECT_EQ(chooseLimbs(figure, candidates)[3], 1u);
   candidates[3] = {{crossed, 5}, {figure.limbs[3], 1}};

@@ -12,13 +12,13 @@ namespace {
 
 constexpr int kLimbDirections = 160;
 constexpr double kShortest = 0.85, kLongest = 1.15;  // lower bones against the proportions'
-constexpr double kAlikeWay = 0.985;
-constexpr std::size_t kMostLowers = 20;        // that begin at one place
-constexpr std::size_t kMostWays = 4;           // of these that a limb is tried with
-constexpr double kLeastMatch = -0.1;           // of a lower bone
+constexpr double kSameDirection = 0.985;
+constexpr std::size_t kMaxLowers = 20;         // that begin at one place
+constexpr std::size_t kMaxDirections = 4;      // of these that a limb is tried with
+constexpr double kMinMatch = -0.1;             // of a lower bone
 constexpr double kThinnest[] = {0.012, 0.02};  // statures, of the body at elbows, at knees
-constexpr double kMostStretch = 1.35, kLeastStretch = 0.65;
-constexpr double kMostShoulderShift = 0.03;  // statures that a shoulder gives way
+constexpr double kMaxStretch = 1.35, kMinStretch = 0.65;
+constexpr double kMaxShoulderShift = 0.03;  // statures that a shoulder gives way
 constexpr double kLimbInTrunk = 0.25;
 constexpr double kApartMiddles = 0.035;  // statures between elbows or knees that are looked at
 constexpr double kAlikeLimbMiddle = 0.04, kAlikeLimbAnkle = 0.06;
@@ -43,24 +43,24 @@ std::vector<LimbFinder::Lower> LimbFinder::lowersAt(const MedialSphere& sphere, 
   if (sphere.radius < kThinnest[leg] * stature_) return lowers;
   const int limb = leg ? 2 : 0;
   const double length = lowerLength(limb) * stature_;
-  const auto add = [&](const Vec3& way, double scale) {
-    if (body_.distance->at(sphere.center + 0.5 * scale * length * way) > 0) return;
-    const double match = match_.lower(limb, sphere.center, way, scale * length, stature_);
-    if (match > kLeastMatch) lowers.push_back({way, scale, match});
+  const auto add = [&](const Vec3& displacement, double scale) {
+    if (body_.distance->at(sphere.center + 0.5 * scale * length * displacement) > 0) return;
+    const double match = match_.lower(limb, sphere.center, displacement, scale * length, stature_);
+    if (match > kMinMatch) lowers.push_back({displacement, scale, match});
   };
   for (const MedialSphere& other : body_.spheres) {
-    const Vec3 way = other.center - sphere.center;
-    const double scale = way.norm() / length;
-    if (scale > kShortest && scale < kLongest) add(way.normalized(), scale);
+    const Vec3 displacement = other.center - sphere.center;
+    const double scale = displacement.norm() / length;
+    if (scale > kShortest && scale < kLongest) add(displacement.normalized(), scale);
   }
   // Some end where no sphere is.
-  static const std::vector<Vec3> kWays = evenDirections(kLimbDirections);
-  for (const Vec3& way : kWays) {
-    if (body_.distance->at(sphere.center + 0.95 * length * way) < 0) add(way, 1);
+  static const std::vector<Vec3> kDirections = evenDirections(kLimbDirections);
+  for (const Vec3& displacement : kDirections) {
+    if (body_.distance->at(sphere.center + 0.95 * length * displacement) < 0) add(displacement, 1);
   }
   return bestApart(
-      std::move(lowers), kMostLowers, [](const Lower& lower) { return lower.match; },
-      [](const Lower& a, const Lower& b) { return a.direction.dot(b.direction) > kAlikeWay; });
+      std::move(lowers), kMaxLowers, [](const Lower& lower) { return lower.match; },
+      [](const Lower& a, const Lower& b) { return a.direction.dot(b.direction) > kSameDirection; });
 }
 
 std::vector<LimbFinder::Upper> LimbFinder::uppersOf(const Figure& figure, int limb, std::size_t most) const {
@@ -72,14 +72,14 @@ std::vector<LimbFinder::Upper> LimbFinder::uppersOf(const Figure& figure, int li
   std::vector<Upper> uppers;
   for (std::size_t s = 0; s < body_.spheres.size(); ++s) {
     if (lowers_[isLeg(limb)][s].empty()) continue;
-    const Vec3 way = body_.spheres[s].center - socket;
-    double reach = way.norm();
-    if (reach > kMostStretch * length || reach < kLeastStretch * length) continue;
+    const Vec3 displacement = body_.spheres[s].center - socket;
+    double reach = displacement.norm();
+    if (reach > kMaxStretch * length || reach < kMinStretch * length) continue;
     bones = {};
-    bones.upper = way / reach;
+    bones.upper = displacement / reach;
     if (!upperAllowed(trunk, limb, bones.upper)) continue;
     if (!isLeg(limb)) {  // the shoulder gives way where the bone would be too long or too short
-      const double give = std::clamp(reach - length, -kMostShoulderShift * size, kMostShoulderShift * size);
+      const double give = std::clamp(reach - length, -kMaxShoulderShift * size, kMaxShoulderShift * size);
       bones.shift = give / size * (trunk.transpose() * bones.upper);
       reach -= give;
     }
@@ -97,7 +97,7 @@ std::vector<LimbFinder::Upper> LimbFinder::uppersOf(const Figure& figure, int li
 Vec3 LimbFinder::bestFoot(const Figure& figure, int limb, bool turned) const {
   const Vec3 down = figure.limbs[limb].lower;
   const Vec3 forward = toesForward(figure, limb).normalized(), aside = down.cross(forward);
-  const Vec3 ankle = figure.places(limb).ankle;
+  const Vec3 ankle = figure.positions(limb).ankle;
   Vec3 best = forward;
   double most = -1e9;
   for (const double yaw : kFootYaws) {
@@ -121,7 +121,7 @@ std::vector<LimbFinder::Candidate> LimbFinder::find(const Figure& figure, int li
   Figure trial = figure;
   std::vector<Candidate> all;
   for (const Upper& upper : uppersOf(figure, limb, effort.middles)) {
-    std::size_t ways = 0;
+    std::size_t count = 0;
     for (const Lower& lower : lowers_[isLeg(limb)][upper.sphere]) {
       FigureLimb& bones = trial.limbs[limb];
       bones = upper.bones;
@@ -129,21 +129,21 @@ std::vector<LimbFinder::Candidate> LimbFinder::find(const Figure& figure, int li
       bones.lowerScale = lower.scale * stature_ / figure.stature;
       if (isLeg(limb)) bones.end = toesForward(trial, limb).normalized();
       if (!limbAllowed(trial, limb)) continue;
-      if (++ways > kMostWays) break;
-      const FigureLimbPlaces places = trial.places(limb);
-      const double inside =
-          match_.insideTrunk(figure, places.ankle) + match_.insideTrunk(figure, 0.5 * (places.middle + places.ankle));
+      if (++count > kMaxDirections) break;
+      const LimbPositions positions = trial.positions(limb);
+      const double inside = match_.insideTrunk(figure, positions.ankle) +
+                            match_.insideTrunk(figure, 0.5 * (positions.middle + positions.ankle));
       all.push_back({bones, weights.upper * upper.match + weights.lower * lower.match - kLimbInTrunk * inside -
                                 match_.pinCost(trial, limb)});
     }
   }
   const auto matchOf = [](const Candidate& candidate) { return candidate.match; };
-  const auto places = [&](const Candidate& candidate) {
+  const auto positions = [&](const Candidate& candidate) {
     trial.limbs[limb] = candidate.bones;
-    return trial.places(limb);
+    return trial.positions(limb);
   };
   const auto isAlike = [&](const Candidate& a, const Candidate& b) {
-    return alike(places(a), places(b), kAlikeLimbMiddle * figure.stature, kAlikeLimbAnkle * figure.stature);
+    return alike(positions(a), positions(b), kAlikeLimbMiddle * figure.stature, kAlikeLimbAnkle * figure.stature);
   };
   std::vector<Candidate> apart = bestApart(std::move(all), effort.most + kMoreLooked, matchOf, isAlike);
   for (Candidate& candidate : apart) {

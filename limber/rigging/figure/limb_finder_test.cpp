@@ -17,8 +17,8 @@ TEST(LimbFinder, FindsTheLimbsOfATrunkInAnyPose) {
       EXPECT_LE(found.size(), 6u);
       Figure best = figure;
       best.limbs[limb] = found.front().bones;
-      EXPECT_LT((best.places(limb).middle - figure.places(limb).middle).norm(), 0.05) << limb;
-      EXPECT_LT((best.places(limb).ankle - figure.places(limb).ankle).norm(), 0.08) << limb;
+      EXPECT_LT((best.positions(limb).middle - figure.positions(limb).middle).norm(), 0.05) << limb;
+      EXPECT_LT((best.positions(limb).ankle - figure.positions(limb).ankle).norm(), 0.08) << limb;
     }
   }
 }

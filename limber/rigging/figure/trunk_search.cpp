@@ -14,21 +14,21 @@ namespace limber {
 namespace {
 
 // Of heads.
-constexpr double kStatureOverRadius = 1 / 0.058;           // of the sphere inside a head
-constexpr double kLeastStature = 0.5, kMostStature = 2.4;  // heights of the body
-constexpr double kLowestHead = 0.3;                        // heights
-constexpr double kBallOverSphere = 1.07;                   // a head is longer than the sphere in it is wide
-constexpr double kLessRound = 0.15;                        // than the roundest
-constexpr std::size_t kMostHeads = 6;
-constexpr std::array<double, 3> kHeadShares = {0.064, 0.057, 0.05};  // radius of the sphere by stature
+constexpr double kStatureOverRadius = 1 / 0.058;        // of the sphere inside a head
+constexpr double kMinStature = 0.5, kMaxStature = 2.4;  // heights of the body
+constexpr double kLowestHead = 0.3;                     // heights
+constexpr double kBallOverSphere = 1.07;                // a head is longer than the sphere in it is wide
+constexpr double kLessRound = 0.15;                     // than the roundest
+constexpr std::size_t kMaxHeads = 6;
+constexpr std::array<double, 3> kHeadFractions = {0.064, 0.057, 0.05};  // radius of the sphere by stature
 
 // Of trunks.
 constexpr int kTrunkDirections = 240, kTurns = 12;
-constexpr std::size_t kMostNecks = 30, kMostPelvises = 4;
-constexpr double kNeckUp = 0.3;                      // most that a neck's base lies above the head, as a sine
-constexpr double kNeckDeep = 0.04;                   // statures, of a neck's base
-constexpr double kLeastNod = 0.45, kLeastBow = 0.5;  // least cosine between neck and chest, chest and pelvis
-constexpr double kInside = 0.02;                     // statures, of waist and hips
+constexpr std::size_t kMaxNecks = 30, kMaxPelvises = 4;
+constexpr double kNeckUp = 0.3;                  // most that a neck's base lies above the head, as a sine
+constexpr double kNeckDeep = 0.04;               // statures, of a neck's base
+constexpr double kMinNod = 0.45, kMinBow = 0.5;  // least cosine between neck and chest, chest and pelvis
+constexpr double kInside = 0.02;                 // statures, of waist and hips
 constexpr double kAlikeWaist = 0.04, kAlikeWaistTurn = 0.94;
 constexpr double kAlikeHips = 0.05, kAlikePelvis = 0.9;
 constexpr std::array<double, 5> kTwists = {-0.7, -0.35, 0, 0.35, 0.7};
@@ -52,9 +52,9 @@ Mat3 axesAbout(const Vec3& up, const SteadyAngle& angle) {
   return axes;
 }
 
-const std::vector<Vec3>& allWays() {
-  static const std::vector<Vec3> kWays = evenDirections(kTrunkDirections);
-  return kWays;
+const std::vector<Vec3>& allDirections() {
+  static const std::vector<Vec3> kDirections = evenDirections(kTrunkDirections);
+  return kDirections;
 }
 
 class TrunkSearch {
@@ -65,9 +65,9 @@ class TrunkSearch {
     std::vector<Rated> chests;
     for (const Rated& neck : necks(start)) {
       Figure figure = neck.figure;
-      for (const Vec3& down : allWays()) {
+      for (const Vec3& down : allDirections()) {
         const double nod = down.dot(figure.neck);
-        if (nod < kLeastNod) continue;
+        if (nod < kMinNod) continue;
         figure.chest.col(1) = -down;
         if (!isInside(figure, figure.waist())) continue;
         for (int turn = 0; turn < kTurns; ++turn) {
@@ -85,8 +85,8 @@ class TrunkSearch {
   std::vector<Rated> pelvises(const Figure& start) const {
     std::vector<Rated> pelvises;
     Figure figure = start;
-    for (const Vec3& down : allWays()) {
-      if (-down.dot(start.chest.col(1)) < kLeastBow) continue;
+    for (const Vec3& down : allDirections()) {
+      if (-down.dot(start.chest.col(1)) < kMinBow) continue;
       const Vec3 left = (start.chest.col(0) + start.chest.col(0).dot(down) * -down).normalized();
       Mat3 axes;
       axes << left, -down, left.cross(-down);
@@ -97,27 +97,27 @@ class TrunkSearch {
         pelvises.push_back({figure, match_.trunk(figure)});
       }
     }
-    return bestApart(std::move(pelvises), kMostPelvises, matchOf, [](const Rated& a, const Rated& b) {
+    return bestApart(std::move(pelvises), kMaxPelvises, matchOf, [](const Rated& a, const Rated& b) {
       return (a.figure.hips() - b.figure.hips()).norm() < kAlikeHips * a.figure.stature &&
              a.figure.pelvis.col(0).dot(b.figure.pelvis.col(0)) > kAlikePelvis;
     });
   }
 
  private:
-  bool isInside(const Figure& figure, const Vec3& place) const {
-    return body_.distance->at(place) < -kInside * figure.stature;
+  bool isInside(const Figure& figure, const Vec3& position) const {
+    return body_.distance->at(position) < -kInside * figure.stature;
   }
 
   std::vector<Rated> necks(const Figure& start) const {
     std::vector<Rated> necks;
     Figure figure = start;
-    for (const Vec3& way : allWays()) {
-      if (way.dot(up_) > kNeckUp) continue;
-      figure.neck = way;
+    for (const Vec3& direction : allDirections()) {
+      if (direction.dot(up_) > kNeckUp) continue;
+      figure.neck = direction;
       const double deep = -body_.distance->at(figure.neckBase()) / (kNeckDeep * figure.stature);
       if (deep > 0.3) necks.push_back({figure, match_.neck(figure) + 0.3 * std::min(deep, 1.2)});
     }
-    return bestOf(std::move(necks), kMostNecks, matchOf);
+    return bestOf(std::move(necks), kMaxNecks, matchOf);
   }
 
   const BodyVolume& body_;
@@ -137,13 +137,13 @@ std::vector<HeadBall> findHeads(const BodyVolume& body, const FigureMatch& match
   std::vector<HeadBall> balls;
   for (const MedialSphere& sphere : body.spheres) {
     const double stature = kStatureOverRadius * sphere.radius;
-    if (stature < kLeastStature * height || stature > kMostStature * height) continue;
+    if (stature < kMinStature * height || stature > kMaxStature * height) continue;
     if (sphere.center.dot(up) < low + kLowestHead * height) continue;
     const double radius = kBallOverSphere * sphere.radius;
     balls.push_back({sphere.center, radius, match.head(sphere.center, radius)});
   }
   std::vector<HeadBall> heads = bestApart(
-      std::move(balls), kMostHeads, [](const HeadBall& ball) { return ball.match; },
+      std::move(balls), kMaxHeads, [](const HeadBall& ball) { return ball.match; },
       [](const HeadBall& kept, const HeadBall& ball) {
         return (kept.middle - ball.middle).norm() < 0.5 * kept.radius;
       });
@@ -155,7 +155,7 @@ std::vector<HeadBall> findHeads(const BodyVolume& body, const FigureMatch& match
 
 std::vector<double> staturesFor(const HeadBall& head) {
   std::vector<double> statures;
-  for (const double share : kHeadShares) statures.push_back(head.radius / kBallOverSphere / share);
+  for (const double fraction : kHeadFractions) statures.push_back(head.radius / kBallOverSphere / fraction);
   return statures;
 }
 

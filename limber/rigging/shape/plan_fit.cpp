@@ -57,22 +57,22 @@ class PlanBuilder {
 
  private:
   Vec3 trunkAt(double along) const {
-    const std::vector<double>& way = reading_.along;
-    const auto after = std::lower_bound(way.begin(), way.end(), along);
-    if (after == way.begin()) return reading_.trunk().points.front().place;
-    if (after == way.end()) return reading_.trunk().end();
-    const auto p = static_cast<std::size_t>(after - way.begin());
-    const Vec3 &a = reading_.trunk().points[p - 1].place, &b = reading_.trunk().points[p].place;
-    return a + (along - way[p - 1]) / std::max(way[p] - way[p - 1], 1e-12) * (b - a);
+    const std::vector<double>& distances = reading_.along;
+    const auto after = std::lower_bound(distances.begin(), distances.end(), along);
+    if (after == distances.begin()) return reading_.trunk().points.front().position;
+    if (after == distances.end()) return reading_.trunk().end();
+    const auto p = static_cast<std::size_t>(after - distances.begin());
+    const Vec3 &a = reading_.trunk().points[p - 1].position, &b = reading_.trunk().points[p].position;
+    return a + (along - distances[p - 1]) / std::max(distances[p] - distances[p - 1], 1e-12) * (b - a);
   }
 
-  Index add(const std::string& name, std::optional<Index> parent, const Vec3& place, bool isTip = false) {
+  Index add(const std::string& name, std::optional<Index> parent, const Vec3& position, bool isTip = false) {
     TemplateJoint joint;
     joint.name = name;
     joint.parent = parent;
-    joint.place = place / reading_.frame.height;
+    joint.position = position / reading_.frame.height;
     joint.role = isTip ? TemplateRole::kTip : TemplateRole::kPlaced;
-    fit_.embedding.places.push_back(joint.place);
+    fit_.embedding.positions.push_back(joint.position);
     fit_.skeleton.joints.push_back(std::move(joint));
     return fit_.skeleton.jointCount() - 1;
   }
@@ -92,14 +92,14 @@ class PlanBuilder {
 
   // On both sides; names without the side.
   template <std::size_t N>
-  void addLimb(Index parent, const std::array<std::string, N>& names, const std::array<Vec3, N + 1>& places) {
+  void addLimb(Index parent, const std::array<std::string, N>& names, const std::array<Vec3, N + 1>& positions) {
     std::array<std::array<Index, N + 1>, 2> joints;
     for (const std::size_t side : {0u, 1u}) {
       Index above = parent;
       for (std::size_t i = 0; i <= N; ++i) {
         const std::string name = (side == 0 ? "left" : "right") + (i < N ? names[i] : names[N - 1] + "Tip");
-        const Vec3 place = side == 0 ? places[i] : Vec3(places[i].cwiseProduct(Vec3(-1, 1, 1)));
-        above = joints[side][i] = add(name, above, place, i == N);
+        const Vec3 position = side == 0 ? positions[i] : Vec3(positions[i].cwiseProduct(Vec3(-1, 1, 1)));
+        above = joints[side][i] = add(name, above, position, i == N);
       }
     }
     for (std::size_t i = 0; i <= N; ++i) {
@@ -111,31 +111,32 @@ class PlanBuilder {
   // A limb in three bones from its root: two bends where three straight bones follow it best.
   std::array<Vec3, 4> bonesOf(const PairedLimb& limb) const {
     const std::vector<BodyCurve::Point>& points = reading_.curves[limb.curve].points;
-    std::vector<Vec3> places;
-    for (std::size_t p = 1; p < points.size(); ++p) places.push_back(points[p].place);
-    places.insert(places.begin(), reading_.curves[limb.curve].root());
-    while (places.size() < 4) places.insert(places.end() - 1, 0.5 * (places[places.size() - 2] + places.back()));
-    const std::size_t last = places.size() - 1;
+    std::vector<Vec3> positions;
+    for (std::size_t p = 1; p < points.size(); ++p) positions.push_back(points[p].position);
+    positions.insert(positions.begin(), reading_.curves[limb.curve].root());
+    while (positions.size() < 4)
+      positions.insert(positions.end() - 1, 0.5 * (positions[positions.size() - 2] + positions.back()));
+    const std::size_t last = positions.size() - 1;
     std::array<std::size_t, 2> bends = {1, 2};
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 1; i + 1 < last; ++i) {
       for (std::size_t j = i + 1; j < last; ++j) {
-        const double cost =
-            strayed(places, 0, i) + strayed(places, i, j) + strayed(places, j, last) +
-            uneven({(places[i] - places[0]).norm(), (places[j] - places[i]).norm(), (places[last] - places[j]).norm()});
+        const double cost = strayed(positions, 0, i) + strayed(positions, i, j) + strayed(positions, j, last) +
+                            uneven({(positions[i] - positions[0]).norm(), (positions[j] - positions[i]).norm(),
+                                    (positions[last] - positions[j]).norm()});
         if (cost >= least) continue;
         least = cost;
         bends = {i, j};
       }
     }
-    return {places[0], places[bends[0]], places[bends[1]], places[last]};
+    return {positions[0], positions[bends[0]], positions[bends[1]], positions[last]};
   }
 
   // Squared distances to the straight bone from one place to another.
-  static double strayed(const std::vector<Vec3>& places, std::size_t from, std::size_t to) {
+  static double strayed(const std::vector<Vec3>& positions, std::size_t from, std::size_t to) {
     double sum = 0;
     for (std::size_t p = from + 1; p < to; ++p) {
-      const double far = distanceToBone(places[p], places[from], places[to]);
+      const double far = distanceToBone(positions[p], positions[from], positions[to]);
       sum += far * far;
     }
     return sum;
@@ -192,7 +193,7 @@ class PlanBuilder {
     std::optional<PairedLimb> arms;
     for (const PairedLimb& limb : reading_.limbs) {
       const double at = reading_.along[limb.at], length = reading_.curves[limb.curve].length;
-      if (limb.isLeg || at < kHeadShare || at > hips) continue;
+      if (limb.isLeg || at < kHeadFraction || at > hips) continue;
       if (!arms || length > reading_.curves[arms->curve].length) arms = limb;
     }
     return arms;
@@ -208,7 +209,7 @@ class PlanBuilder {
     for (const PairedLimb& limb : reading_.limbs) {
       if (number == 2) break;
       const BodyCurve& curve = reading_.curves[limb.curve];
-      const Vec3 root = curve.points[1].place;
+      const Vec3 root = curve.points[1].position;
       addLimb<1>(reading_.along[limb.at] < 0.5 ? chest : tail,
                  {number == 0 ? std::string("Fin") : fmt::format("Fin{}", number)}, {root, curve.end()});
       ++number;
@@ -243,18 +244,18 @@ double likelihood(const PlanKind& kind, const ShapeReading& reading) {
   const bool isOfPlan = kind.plan == reading.plan || (kind.hasWings && reading.plan == BodyPlan::kTwoLegs);
   const bool mayHaveWings = kind.hasWings || (kind.plan != BodyPlan::kTwoLegs && kind.plan != BodyPlan::kFourLegs);
   if (!isOfPlan || (kind.hasWings && !reading.wings()) || (!mayHaveWings && reading.wings())) return 0;
-  if (legs.size() < kind.fewestLegs || legs.size() > kind.mostLegs) return 0;
+  if (legs.size() < kind.fewestLegs || legs.size() > kind.maxLegs) return 0;
   if (kind.hasWings || kind.plan != BodyPlan::kFourLegs) return reading.confidence;
-  const double up = reading.trunk().points[legs.back().at].place.y() / reading.trunk().length;
+  const double up = reading.trunk().points[legs.back().at].position.y() / reading.trunk().length;
   return reading.confidence * std::clamp((kHigh - up) / (kHigh - kLow), 0.0, 1.0);
 }
 
 TemplateFit fitPlan(const PlanKind& kind, const ShapeReading& reading) {
   const std::size_t legs = reading.legs().size();
-  if (legs < kind.fewestLegs || legs > kind.mostLegs) {
+  if (legs < kind.fewestLegs || legs > kind.maxLegs) {
     throw Error(ErrorCode::kUnsupported,
                 fmt::format("needs {}{} pairs of legs, and the model has {}", kind.fewestLegs,
-                            kind.mostLegs > kind.fewestLegs ? fmt::format(" to {}", kind.mostLegs) : "", legs),
+                            kind.maxLegs > kind.fewestLegs ? fmt::format(" to {}", kind.maxLegs) : "", legs),
                 std::string(kind.name), "`template: auto` takes what suits the model");
   }
   return PlanBuilder(kind, reading).build();

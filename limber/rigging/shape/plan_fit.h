@@ -17,7 +17,7 @@ struct PlanKind {
   std::string_view name;     // "fish"
   std::string_view summary;  // one line for --help
   BodyPlan plan;
-  std::size_t fewestLegs, mostLegs;  // pairs
+  std::size_t fewestLegs, maxLegs;  // pairs
   bool hasWings = false;
 };
 

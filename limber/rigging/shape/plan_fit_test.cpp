@@ -16,8 +16,8 @@ ShapeReading shapeOf(const TriMesh& mesh) {
 }
 
 // In the unit of the mesh, over the plane between left and right and the ground.
-Vec3 placeOf(const TemplateFit& fit, std::string_view joint) {
-  return fit.frame.height * fit.embedding.places[fit.skeleton.find(joint).value()];
+Vec3 positionOf(const TemplateFit& fit, std::string_view joint) {
+  return fit.frame.height * fit.embedding.positions[fit.skeleton.find(joint).value()];
 }
 
 // The mesh's longest side becomes 1.
@@ -34,11 +34,11 @@ TEST(PlanFit, PutsJointsWhereALegBends) {
   const ShapeReading reading = shapeOf(mesh);
   const TemplateFit fit = fitPlan(*findPlanKind("dinosaur"), reading);
   const double size = sizeOf(mesh);
-  EXPECT_LT((placeOf(fit, "leftLowerLeg") * size - Vec3(0.09, 0.2, 0.08)).tail<2>().norm(), 0.06);
-  EXPECT_LT((placeOf(fit, "leftFoot") * size - Vec3(0.09, 0.1, -0.04)).tail<2>().norm(), 0.06);
+  EXPECT_LT((positionOf(fit, "leftLowerLeg") * size - Vec3(0.09, 0.2, 0.08)).tail<2>().norm(), 0.06);
+  EXPECT_LT((positionOf(fit, "leftFoot") * size - Vec3(0.09, 0.1, -0.04)).tail<2>().norm(), 0.06);
   EXPECT_TRUE(fit.skeleton.find("leftHand") && fit.skeleton.find("tail2") && fit.skeleton.find("head"));
-  EXPECT_LT(placeOf(fit, "tail2").z(), placeOf(fit, "hips").z());
-  EXPECT_GT(placeOf(fit, "head").z(), placeOf(fit, "chest").z());
+  EXPECT_LT(positionOf(fit, "tail2").z(), positionOf(fit, "hips").z());
+  EXPECT_GT(positionOf(fit, "head").z(), positionOf(fit, "chest").z());
 }
 
 TEST(PlanFit, BothSidesMirrorEachOther) {
@@ -49,7 +49,8 @@ TEST(PlanFit, BothSidesMirrorEachOther) {
     if (!other) continue;
     ++paired;
     EXPECT_EQ(fit.skeleton.joints[*other].mirror, std::optional<Index>(j));
-    EXPECT_LT((fit.embedding.places[j] - fit.embedding.places[*other].cwiseProduct(Vec3(-1, 1, 1))).norm(), 1e-12);
+    EXPECT_LT((fit.embedding.positions[j] - fit.embedding.positions[*other].cwiseProduct(Vec3(-1, 1, 1))).norm(),
+              1e-12);
   }
   EXPECT_EQ(paired, 2u * 4 * 4) << "three joints and a tip a leg";
   for (const char* joint : {"leftUpperLeg", "leftFoot1", "rightFoot3"}) EXPECT_TRUE(fit.skeleton.find(joint)) << joint;
@@ -76,7 +77,7 @@ TEST(PlanFit, WingsMakeADragon) {
   for (const char* joint : {"leftUpperWing", "rightWingHand", "leftFrontFoot", "rightHindFoot", "tail"}) {
     EXPECT_TRUE(fit.skeleton.find(joint)) << joint;
   }
-  EXPECT_GT(placeOf(fit, "leftWingHand").x(), 0.2);
+  EXPECT_GT(positionOf(fit, "leftWingHand").x(), 0.2);
 }
 
 TEST(PlanFit, AChainFollowsASnake) {
@@ -85,8 +86,8 @@ TEST(PlanFit, AChainFollowsASnake) {
   EXPECT_EQ(std::count_if(fit.skeleton.joints.begin(), fit.skeleton.joints.end(),
                           [](const TemplateJoint& joint) { return joint.role != TemplateRole::kTip; }),
             12);
-  EXPECT_GT(placeOf(fit, "head").y() * sizeOf(mesh), 0.28);
-  EXPECT_LT(placeOf(fit, "tail4").z(), placeOf(fit, "tail").z());
+  EXPECT_GT(positionOf(fit, "head").y() * sizeOf(mesh), 0.28);
+  EXPECT_LT(positionOf(fit, "tail4").z(), positionOf(fit, "tail").z());
 }
 
 TEST(PlanFit, AKindThatAsksForMoreLegsSaysSo) {

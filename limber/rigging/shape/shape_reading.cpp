@@ -23,7 +23,7 @@ constexpr Margin kSticksOut = {0.65, 1.15};  // length, in radii of the trunk wh
 constexpr Margin kComesDown = {0.5, 0.8};    // of the height where it hangs, how far down it reaches
 constexpr Margin kLegLength = {0.08, 0.15};  // length
 // Of a trunk.
-constexpr Margin kStands = {0.5, 0.9};         // cosine between the up of the frame and that of the anatomy
+constexpr Margin kUpright = {0.5, 0.9};        // cosine between the up of the frame and that of the anatomy
 constexpr Margin kLevelOnFour = {0.5, 0.8};    // cosine to the level: on four legs
 constexpr Margin kLevelOnTwo = {0.6, 0.85};    // on two
 constexpr Margin kLevelAfloat = {0.85, 0.95};  // swimming
@@ -54,12 +54,12 @@ constexpr double kLimbParts[] = {0, 0.34, 0.67, 1};  // of a limb's length, wher
 
 Vec3 lowest(const BodyCurve& curve) {
   return std::min_element(curve.points.begin(), curve.points.end(),
-                          [](const auto& a, const auto& b) { return a.place.y() < b.place.y(); })
-      ->place;
+                          [](const auto& a, const auto& b) { return a.position.y() < b.position.y(); })
+      ->position;
 }
 
 double drop(const BodyCurve& curve) {
-  return curve.points.front().place.y() - lowest(curve).y();
+  return curve.points.front().position.y() - lowest(curve).y();
 }
 
 // Legs reach the ground, come down most of the way to it, and are no fins or sheets.
@@ -67,19 +67,19 @@ double legLikeness(const BodyCurve& curve) {
   const BodyCurve::Point& root = curve.points.front();
   return kOnGround.of(lowest(curve).y()) * kRound.of(curve.flatness()) * kSolid.of(curve.meanRadius()) *
          kSticksOut.of(curve.length / std::max(root.radius, 1e-9)) *
-         kComesDown.of(drop(curve) / std::max(root.place.y(), 1e-9)) * kLegLength.of(curve.length);
+         kComesDown.of(drop(curve) / std::max(root.position.y(), 1e-9)) * kLegLength.of(curve.length);
 }
 
 // Where the curve has come so far of its way from its second point on: the first lies in the middle of its carrier.
-Vec3 placeAlong(const BodyCurve& curve, double part) {
+Vec3 pointAlong(const BodyCurve& curve, double part) {
   double left = 0;
   for (std::size_t p = 2; p < curve.points.size(); ++p) {
-    left += (curve.points[p].place - curve.points[p - 1].place).norm();
+    left += (curve.points[p].position - curve.points[p - 1].position).norm();
   }
   left *= part;
   for (std::size_t p = 2; p < curve.points.size(); ++p) {
-    const Vec3 step = curve.points[p].place - curve.points[p - 1].place;
-    if (left <= step.norm()) return curve.points[p - 1].place + left / std::max(step.norm(), 1e-12) * step;
+    const Vec3 step = curve.points[p].position - curve.points[p - 1].position;
+    if (left <= step.norm()) return curve.points[p - 1].position + left / std::max(step.norm(), 1e-12) * step;
     left -= step.norm();
   }
   return curve.end();
@@ -118,9 +118,9 @@ class ShapeReader {
     const std::vector<BodyCurve::Point>& points = reading_.trunk().points;
     reading_.along.assign(points.size(), 0.0);
     for (std::size_t p = 1; p < points.size(); ++p) {
-      reading_.along[p] = reading_.along[p - 1] + (points[p].place - points[p - 1].place).norm();
+      reading_.along[p] = reading_.along[p - 1] + (points[p].position - points[p - 1].position).norm();
     }
-    for (double& way : reading_.along) way /= std::max(reading_.along.back(), 1e-12);
+    for (double& pathLength : reading_.along) pathLength /= std::max(reading_.along.back(), 1e-12);
   }
 
   // Limbs that hang on the trunk, or on what goes off it between left and right, as legs that touch each other do.
@@ -144,11 +144,11 @@ class ShapeReader {
     }
   }
 
-  Index addJoint(const Vec3& place, std::optional<Index> parent) {
+  Index addJoint(const Vec3& position, std::optional<Index> parent) {
     Joint joint;
     joint.parent = parent;
-    joint.rest.translation = parent ? Vec3(place - places_[*parent]) : place;
-    places_.push_back(place);
+    joint.rest.translation = parent ? Vec3(position - positions_[*parent]) : position;
+    positions_.push_back(position);
     skeleton_.joints.push_back(std::move(joint));
     return skeleton_.jointCount() - 1;
   }
@@ -159,7 +159,7 @@ class ShapeReader {
     const auto thickest =
         std::max_element(trunk.begin(), trunk.end(), [](const auto& a, const auto& b) { return a.area < b.area; });
     const auto root = static_cast<std::size_t>(thickest - trunk.begin());
-    std::vector<std::pair<std::size_t, Index>> along = {{root, addJoint(trunk[root].place, {})}};
+    std::vector<std::pair<std::size_t, Index>> along = {{root, addJoint(trunk[root].position, {})}};
     for (const bool ahead : {true, false}) {
       std::pair<std::size_t, Index> last = along.front();
       for (std::size_t p = root; ahead ? p + 1 < trunk.size() : p > 0;) {
@@ -167,7 +167,7 @@ class ShapeReader {
         const bool isEnd = ahead ? p + 1 == trunk.size() : p == 0;
         const double step = std::abs(reading_.along[p] - reading_.along[last.first]);
         if (step < 1.0 / kTrunkBones && !isEnd) continue;
-        last = {p, addJoint(trunk[p].place, last.second)};
+        last = {p, addJoint(trunk[p].position, last.second)};
         along.push_back(last);
       }
     }
@@ -180,9 +180,9 @@ class ShapeReader {
       for (const double side : {1.0, -1.0}) {
         Index joint = nearest->second;
         for (const double part : kLimbParts) {
-          Vec3 place = part == 0 ? curve.root() : placeAlong(curve, part);
-          place.x() *= side;
-          joint = addJoint(place, joint);
+          Vec3 position = part == 0 ? curve.root() : pointAlong(curve, part);
+          position.x() *= side;
+          joint = addJoint(position, joint);
         }
         if (side > 0) ends_.push_back(joint);
       }
@@ -194,13 +194,13 @@ class ShapeReader {
     reading_.frame.axes.row(0) *= -1;
     reading_.frame.axes.row(2) *= -1;
     for (BodyCurve& curve : reading_.curves) {
-      for (BodyCurve::Point& point : curve.points) point.place.z() *= -1;
+      for (BodyCurve::Point& point : curve.points) point.position.z() *= -1;
     }
   }
 
   // The head is in front, or on top.
   void headFirst() {
-    const Vec3 first = reading_.trunk().points.front().place, last = reading_.trunk().end();
+    const Vec3 first = reading_.trunk().points.front().position, last = reading_.trunk().end();
     if (first.y() + first.z() >= last.y() + last.z()) return;
     BodyCurve& trunk = reading_.curves.front();
     const std::size_t end = trunk.points.size() - 1;
@@ -210,7 +210,7 @@ class ShapeReader {
     }
     for (PairedLimb& limb : reading_.limbs) limb.at = end - limb.at;
     std::reverse(reading_.along.begin(), reading_.along.end());
-    for (double& way : reading_.along) way = 1 - way;
+    for (double& pathLength : reading_.along) pathLength = 1 - pathLength;
   }
 
   // How many times as long as thick, by the thickness that a fifth of the trunk exceeds.
@@ -258,7 +258,7 @@ class ShapeReader {
     double mass = 0, middle = 0;
     for (const BodyCurve::Point& point : reading_.trunk().points) {
       mass += point.area;
-      middle += point.area * point.place.z();
+      middle += point.area * point.position.z();
     }
     const double foot = lowest(reading_.curves[leg.curve]).z();
     return std::abs(foot - middle / std::max(mass, 1e-12)) / reading_.trunk().length;
@@ -266,7 +266,7 @@ class ShapeReader {
 
   bool hasArms(const PairedLimb& leg) const {
     return std::any_of(reading_.limbs.begin(), reading_.limbs.end(), [&](const PairedLimb& limb) {
-      return !limb.isLeg && limb.at < leg.at && reading_.along[limb.at] > kHeadShare &&
+      return !limb.isLeg && limb.at < leg.at && reading_.along[limb.at] > kHeadFraction &&
              reading_.curves[limb.curve].length > kArm;
     });
   }
@@ -281,11 +281,11 @@ class ShapeReader {
     const std::vector<PairedLimb> legs = reading_.legs();
     const Others others = othersThanLegs();
     const BodyCurve& trunk = reading_.trunk();
-    const Vec3 way = trunk.points.front().place - trunk.end();
-    const double across = std::abs(way.z()) / std::max(way.norm(), 1e-9);
+    const Vec3 pathLength = trunk.points.front().position - trunk.end();
+    const double across = std::abs(pathLength.z()) / std::max(pathLength.norm(), 1e-9);
     const double slender = slenderness();
     // That it stands as it is taken to stand, and that each limb is a leg or none.
-    double counted = kStands.of(anatomy.axes.up.y());
+    double counted = kUpright.of(anatomy.axes.up.y());
     for (const PairedLimb& limb : reading_.limbs) {
       // Of a leg that does not reach the ground its looks are all there is.
       counted *= !limb.isLeg ? 1 - limb.legLike : limb.legLike > 0.5 ? limb.legLike : kLooksLikeLeg;
@@ -297,7 +297,7 @@ class ShapeReader {
       decide(BodyPlan::kFourLegs, counted * kLevelOnFour.of(across) * kLegsApart.of(apart));
     } else if (legs.size() == 1) {
       const double at = reading_.along[legs[0].at];
-      const Vec3 ahead = trunk.points.front().place - trunk.points[legs[0].at].place;
+      const Vec3 ahead = trunk.points.front().position - trunk.points[legs[0].at].position;
       const double rises = ahead.y() / std::max(ahead.norm(), 1e-9);
       const double arms = hasArms(legs[0]) ? 1 : kArmless;
       decide(BodyPlan::kUpright, counted * arms * kLegsLow.of(at) * kRises.of(rises));
@@ -311,9 +311,9 @@ class ShapeReader {
   }
 
   ShapeReading reading_;
-  Skeleton skeleton_;         // along the curves, the mesh's unit
-  std::vector<Vec3> places_;  // of its joints
-  std::vector<Index> ends_;   // by limb: the joint at its end
+  Skeleton skeleton_;            // along the curves, the mesh's unit
+  std::vector<Vec3> positions_;  // of its joints
+  std::vector<Index> ends_;      // by limb: the joint at its end
 };
 
 }  // namespace
@@ -327,7 +327,7 @@ std::vector<PairedLimb> ShapeReading::legs() const {
 }
 
 std::optional<PairedLimb> ShapeReading::wings() const {
-  double foremost = kHeadShare;
+  double foremost = kHeadFraction;
   if (plan == BodyPlan::kFourLegs) foremost = std::max(foremost, along[legs().front().at] - kBeforeLegs);
   std::optional<PairedLimb> wings;
   for (const PairedLimb& limb : limbs) {

@@ -30,8 +30,8 @@ struct PairedLimb {
   bool isLeg = false;
 };
 
-inline constexpr double kBroadWing = 3;    // times as wide as thick: no arm
-inline constexpr double kHeadShare = 0.1;  // of the trunk from the head on: what hangs there is no arm
+inline constexpr double kBroadWing = 3;       // times as wide as thick: no arm
+inline constexpr double kHeadFraction = 0.1;  // of the trunk from the head on: what hangs there is no arm
 
 struct ShapeReading {
   AnatomicalFrame frame;          // with its front where the head is

@@ -48,7 +48,7 @@ TEST(ShapeReading, BeginsTheTrunkAtTheHead) {
   for (TriMesh (*mesh)() : {&testing::capsuleHound, &testing::capsuleTheropod, &testing::capsuleSnake}) {
     const std::optional<ShapeReading> reading = readingOf(mesh());
     ASSERT_TRUE(reading);
-    EXPECT_GT(reading->trunk().points.front().place.z(), reading->trunk().end().z() + 0.5);
+    EXPECT_GT(reading->trunk().points.front().position.z(), reading->trunk().end().z() + 0.5);
     EXPECT_GT(reading->frame.axes(2, 2), 0.9) << "faces +Z";
   }
 }

@@ -16,7 +16,7 @@ class MonotoneQueue;
 // to the image of the other. An edge from a pair to itself joins a sphere to its own image and always crosses.
 // An end of an edge packs node and crossing as 2 * node + crosses.
 using EdgeEnd = std::uint32_t;
-inline constexpr Index kMostNodes = Index{1} << 31;
+inline constexpr Index kMaxNodes = Index{1} << 31;
 inline constexpr EdgeEnd makeEnd(Index node, bool crosses) {
   return node << 1 | static_cast<EdgeEnd>(crosses);
 }

@@ -120,16 +120,16 @@ void collapseRandomly(const Case& start, std::uint64_t seed) {
     ASSERT_EQ(expanded(graph, count), plain.edges());
     // No two edges lead the same way, and none is missing from the heap.
     std::size_t alive = 0;
-    std::set<std::pair<Index, EdgeEnd>> ways;
+    std::set<std::pair<Index, EdgeEnd>> neighbours;
     for (Index i = 0; i < count; ++i) {
       ASSERT_EQ(graph.alive(i), heap.contains(i));
       if (!graph.alive(i)) continue;
       ++alive;
       const Index from = graph.edge(i).from;
       const EdgeEnd to = graph.edge(i).to;
-      ways.insert({std::min(from, nodeOf(to)), makeEnd(std::max(from, nodeOf(to)), crossesOf(to))});
+      neighbours.insert({std::min(from, nodeOf(to)), makeEnd(std::max(from, nodeOf(to)), crossesOf(to))});
     }
-    ASSERT_EQ(ways.size(), alive);
+    ASSERT_EQ(neighbours.size(), alive);
   }
   EXPECT_EQ(died, count);
 }

@@ -14,10 +14,10 @@ void EdgeHeap::siftUp(Index slot, std::uint64_t entry) {
 
 void EdgeHeap::siftDown(Index slot, std::uint64_t entry) {
   for (;;) {
-    const std::uint64_t first = std::uint64_t{slot} * kWays + 1;
+    const std::uint64_t first = std::uint64_t{slot} * kArity + 1;
     if (first >= count_) break;
     const std::uint64_t* const children = lines_[slot + 1].entries;
-    const Index count = static_cast<Index>(std::min<std::uint64_t>(kWays, count_ - first));
+    const Index count = static_cast<Index>(std::min<std::uint64_t>(kArity, count_ - first));
     std::uint64_t least = children[0];
     Index which = 0;
     for (Index i = 1; i < count; ++i) {

@@ -37,19 +37,19 @@ class EdgeHeap {
   }
 
  private:
-  static constexpr Index kWays = 8;
+  static constexpr Index kArity = 8;
   struct alignas(64) Line {
-    std::uint64_t entries[kWays];
+    std::uint64_t entries[kArity];
   };
   // Slot i > 0 stands at place i + 7, slot 0 at place 7, so that the children of i, 8 i + 1 to 8 i + 8, fill line i
   // + 1.
-  std::uint64_t& at(Index slot) { return lines_[(slot + kWays - 1) / kWays].entries[(slot + kWays - 1) % kWays]; }
+  std::uint64_t& at(Index slot) { return lines_[(slot + kArity - 1) / kArity].entries[(slot + kArity - 1) % kArity]; }
   const std::uint64_t& at(Index slot) const {
-    return lines_[(slot + kWays - 1) / kWays].entries[(slot + kWays - 1) % kWays];
+    return lines_[(slot + kArity - 1) / kArity].entries[(slot + kArity - 1) % kArity];
   }
-  static Index parent(Index slot) { return (slot - 1) / kWays; }
+  static Index parent(Index slot) { return (slot - 1) / kArity; }
   void grow(Index count) {
-    const std::size_t needed = std::size_t{count} / kWays + 2;
+    const std::size_t needed = std::size_t{count} / kArity + 2;
     if (lines_.size() < needed) lines_.resize(needed + needed / 2);
   }
 

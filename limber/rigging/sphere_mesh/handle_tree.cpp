@@ -70,10 +70,10 @@ std::vector<VertexPair> TreeMaker::byCost(std::vector<VertexPair> edges) const {
 // one that hung on a handle beside the plane would have to hang on its image as well.
 void TreeMaker::joinPlane() {
   std::vector<Index> plane;
-  std::vector<Index> place(level_.spheres.size(), kNoIndex);
+  std::vector<Index> indices(level_.spheres.size(), kNoIndex);
   for (Index h = 0; h < level_.spheres.size(); ++h) {
     if (!onPlane(h)) continue;
-    place[h] = static_cast<Index>(plane.size());
+    indices[h] = static_cast<Index>(plane.size());
     plane.push_back(h);
   }
   std::vector<VertexPair> within;
@@ -84,7 +84,7 @@ void TreeMaker::joinPlane() {
   for (const auto& [a, b] : byCost(within)) {
     if (!sets_.unite(a, b)) continue;
     connect(a, b);
-    joined.push_back({place[a], place[b]});
+    joined.push_back({indices[a], indices[b]});
   }
   if (joined.size() + 1 >= plane.size()) return;
   std::vector<Vec3f> centers;
@@ -183,14 +183,14 @@ HandleTree TreeMaker::hangFrom(Index root) const {
 
   HandleTree tree;
   std::vector<Index> joints(order.size(), kNoIndex);
-  const auto place = [&](Index h) {
+  const auto addJoint = [&](Index h) {
     if (joints[h] != kNoIndex) return;
     joints[h] = static_cast<Index>(tree.order.size());
     tree.order.push_back(h);
     tree.parents.push_back(parents[h] == kNoIndex ? std::nullopt : std::optional<Index>(joints[parents[h]]));
   };
-  place(root);
-  if (imageOf(root) != root) place(imageOf(root));
+  addJoint(root);
+  if (imageOf(root) != root) addJoint(imageOf(root));
   for (std::size_t i = 0; i < tree.order.size(); ++i) {
     std::vector<Index> children;
     for (const Index next : neighbors_[tree.order[i]]) {
@@ -202,9 +202,9 @@ HandleTree TreeMaker::hangFrom(Index root) const {
       return orbitA != orbitB ? orbitA < orbitB : a < b;
     });
     for (const Index child : children) {
-      place(child);
+      addJoint(child);
       // The image's parent is the image of this parent: it has been placed with it.
-      if (imageOf(child) != child) place(imageOf(child));
+      if (imageOf(child) != child) addJoint(imageOf(child));
     }
   }
   return tree;

@@ -31,12 +31,12 @@ bool areInOneCell(const Cell& a, const Cell& b, int halvings) {
 }
 
 // The new number of each node: clusters in the order of their lowest nodes.
-std::vector<Index> clustersOf(const CollapseStart& start, Index mostNodes, Index& count) {
+std::vector<Index> clustersOf(const CollapseStart& start, Index maxNodes, Index& count) {
   const std::vector<std::uint8_t>& single = start.input.single;
   const std::vector<Cell> cells = finestCells(start.nodeCenters);
   DisjointSets sets(single.size());
   // Cells of a coarser grid are made of those of a finer one.
-  for (int halvings = kFinest; halvings >= 0 && sets.count() > mostNodes; --halvings) {
+  for (int halvings = kFinest; halvings >= 0 && sets.count() > maxNodes; --halvings) {
     for (const GraphEdge& e : start.input.edges) {
       const Index to = nodeOf(e.to);
       if (crossesOf(e.to) || single[e.from] != single[to]) continue;
@@ -71,10 +71,10 @@ std::vector<GraphEdge> edgesBetween(const std::vector<GraphEdge>& edges, const s
 
 }  // namespace
 
-CollapseStart joinNearNodes(CollapseStart start, Index mostNodes) {
-  if (start.nodeCenters.size() <= mostNodes) return start;
+CollapseStart joinNearNodes(CollapseStart start, Index maxNodes) {
+  if (start.nodeCenters.size() <= maxNodes) return start;
   Index count = 0;
-  const std::vector<Index> clusters = clustersOf(start, mostNodes, count);
+  const std::vector<Index> clusters = clustersOf(start, maxNodes, count);
   CollapseStart joined;
   joined.input.quadrics.resize(count);
   joined.input.moments.resize(count);

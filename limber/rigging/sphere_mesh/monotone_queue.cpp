@@ -9,9 +9,9 @@ void MonotoneQueue::fill(const std::vector<float>& keys) {
   occupied_ = 0;
   bound_ = 0;
   announced_ = 0;
-  places_.resize(keys.size());
+  slots_.resize(keys.size());
   for (Index e = 0; e < keys.size(); ++e) {
-    places_[e].key = keys[e];
+    slots_[e].key = keys[e];
     put(pack(e, keys[e]));
   }
 }
@@ -39,10 +39,10 @@ std::vector<Index> MonotoneQueue::someOfTheLowest(std::size_t most) const {
 }
 
 void MonotoneQueue::raise(Index edge, float key) {
-  Place& place = places_[edge];
-  if (!(key > place.key)) return;
-  takeOut(bucketOf(pack(edge, place.key)), place.position);
-  place.key = key;
+  Slot& slot = slots_[edge];
+  if (!(key > slot.key)) return;
+  takeOut(bucketOf(pack(edge, slot.key)), slot.position);
+  slot.key = key;
   put(pack(edge, key));
 }
 

@@ -35,19 +35,19 @@ class MonotoneQueue {
   Index next() const { return next_; }
   // Up to `most` edges, from the lowest bucket up, in no order within one.
   std::vector<Index> someOfTheLowest(std::size_t most) const;
-  bool contains(Index edge) const { return places_[edge].position != kNoIndex; }
-  float key(Index edge) const { return places_[edge].key; }
+  bool contains(Index edge) const { return slots_[edge].position != kNoIndex; }
+  float key(Index edge) const { return slots_[edge].key; }
 
   // `key` is not less than the edge's key; a smaller one leaves it as it is.
   void raise(Index edge, float key);
   void remove(Index edge) {
-    const Place place = places_[edge];
-    takeOut(bucketOf(pack(edge, place.key)), place.position);
-    places_[edge].position = kNoIndex;
+    const Slot slot = slots_[edge];
+    takeOut(bucketOf(pack(edge, slot.key)), slot.position);
+    slots_[edge].position = kNoIndex;
   }
 
  private:
-  struct Place {
+  struct Slot {
     float key = 0;
     Index position = kNoIndex;  // in its bucket
   };
@@ -60,14 +60,14 @@ class MonotoneQueue {
 
   void put(std::uint64_t entry) {
     const int bucket = bucketOf(entry);
-    places_[static_cast<Index>(entry)].position = static_cast<Index>(buckets_[bucket].size());
+    slots_[static_cast<Index>(entry)].position = static_cast<Index>(buckets_[bucket].size());
     buckets_[bucket].push_back(entry);
     if (bucket > 0) occupied_ |= std::uint64_t{1} << (bucket - 1);
   }
   void takeOut(int bucket, Index position) {
     std::vector<std::uint64_t>& entries = buckets_[bucket];
     entries[position] = entries.back();
-    places_[static_cast<Index>(entries[position])].position = position;
+    slots_[static_cast<Index>(entries[position])].position = position;
     entries.pop_back();
     if (bucket > 0 && entries.empty()) occupied_ &= ~(std::uint64_t{1} << (bucket - 1));
   }
@@ -75,7 +75,7 @@ class MonotoneQueue {
   std::array<std::vector<std::uint64_t>, 65> buckets_;
   std::uint64_t occupied_ = 0;  // bit b - 1: bucket b has entries
   std::uint64_t bound_ = 0;     // no entry is less
-  std::vector<Place> places_;   // per edge
+  std::vector<Slot> slots_;     // per edge
   std::vector<std::uint64_t> dealt_;
   Index next_ = kNoIndex;
   int announced_ = 0;  // the bucket for which soon() has been called

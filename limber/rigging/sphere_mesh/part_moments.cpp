@@ -9,7 +9,7 @@ namespace {
 
 // The least root of x^3 - a x^2 + b x - c, all of whose roots are real and >= 0: Laguerre's method from 0, which comes
 // from below and is all but exact after three steps. Square roots and divisions only, so equal on every machine.
-double leastRoot(double a, double b, double c) {
+double minRoot(double a, double b, double c) {
   constexpr double kLine = 1e-9;  // two roots are next to nothing: below, rounding would speak
   if (!(b > kLine * a * a)) return 0;
   double x = 0;
@@ -65,7 +65,7 @@ double PartMoments::radiusBound() const {
   const double yy = second[3] / weight - y * y, yz = second[4] / weight - y * z, zz = second[5] / weight - z * z;
   const double minors = xx * yy - xy * xy + xx * zz - xz * xz + yy * zz - yz * yz;
   const double determinant = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
-  return 1.5 * std::sqrt(3 * std::max(0.0, leastRoot(xx + yy + zz, minors, determinant)));
+  return 1.5 * std::sqrt(3 * std::max(0.0, minRoot(xx + yy + zz, minors, determinant)));
 }
 
 }  // namespace limber

@@ -35,9 +35,9 @@ struct SphereMesh::Cut {
   }
 };
 
-SphereMesh SphereMesh::build(const TriMesh& mesh, Progress& progress, Index mostStartNodes) {
+SphereMesh SphereMesh::build(const TriMesh& mesh, Progress& progress, Index maxStartNodes) {
   if (mesh.positions.empty()) throw Error(ErrorCode::kBadData, "the model has no vertex");
-  if (mesh.positions.size() > kMostNodes / 2) {
+  if (mesh.positions.size() > kMaxNodes / 2) {
     throw Error(ErrorCode::kLimit,
                 fmt::format("the model has {} vertices; at most 2^30 can be rigged", mesh.positions.size()));
   }
@@ -52,7 +52,7 @@ SphereMesh SphereMesh::build(const TriMesh& mesh, Progress& progress, Index most
   parallelFor(points.size(), 16384, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) points[i] = result.frame_.toCollapse(mesh.positions[i]);
   });
-  CollapseStart start = joinNearNodes(collapseStart(mesh, points, surface, mirror), mostStartNodes);
+  CollapseStart start = joinNearNodes(collapseStart(mesh, points, surface, mirror), maxStartNodes);
   result.sequence_ = collapse(start.input, progress);
   result.vertexEnds_ = std::move(start.vertexEnds);
   result.nodeCenters_ = std::move(start.nodeCenters);
@@ -63,7 +63,7 @@ SphereMesh SphereMesh::build(const TriMesh& mesh, Progress& progress, Index most
 }
 
 SphereMesh::Cut SphereMesh::cutAt(Index count) const {
-  if (count < 1 || count > mostSpheres()) refuseHandleCount(count, mostSpheres());
+  if (count < 1 || count > maxSpheres()) refuseHandleCount(count, maxSpheres());
   Cut cut;
   const auto& merges = sequence_.merges;
   if (count >= sequence_.initialCount) {
@@ -219,27 +219,27 @@ std::vector<Index> SphereMesh::vertexHandles(Index count) const {
   return handles;
 }
 
-std::vector<double> SphereMesh::errors(Index mostCount) const {
-  mostCount = std::min(mostCount, mostSpheres());
+std::vector<double> SphereMesh::errors(Index maxCount) const {
+  maxCount = std::min(maxCount, maxSpheres());
   const auto& merges = sequence_.merges;
   const auto errorOf = [&](Index madeBy) {
     if (madeBy == kNoIndex) return 0.0;
     return static_cast<double>(merges[madeBy].planeError) * (merges[madeBy].single ? 1 : 2);
   };
-  std::vector<double> errors(std::size_t{mostCount} + 1, 0);
+  std::vector<double> errors(std::size_t{maxCount} + 1, 0);
   errors[0] = std::numeric_limits<double>::infinity();
   double sum = merges.empty() ? 0 : errorOf(static_cast<Index>(merges.size() - 1));
-  if (mostCount >= 1) errors[1] = sum;
+  if (maxCount >= 1) errors[1] = sum;
   for (std::size_t i = merges.size(); i > 0; --i) {
     const Merge& m = merges[i - 1];
     const Index after = m.countAfter;
-    if (after + 1 > mostCount) break;
+    if (after + 1 > maxCount) break;
     sum -= errorOf(static_cast<Index>(i - 1));
     sum += errorOf(m.keptBefore);
     if (m.gone != m.kept) sum += errorOf(m.goneBefore);
     if (i == 1) sum = 0;  // nothing is merged: what is left is rounding
     const Index before = i > 1 ? merges[i - 2].countAfter : sequence_.initialCount;
-    for (Index count = after + 1; count <= std::min(before, mostCount); ++count) errors[count] = std::max(sum, 0.0);
+    for (Index count = after + 1; count <= std::min(before, maxCount); ++count) errors[count] = std::max(sum, 0.0);
   }
   for (double& error : errors) error = std::sqrt(error) * frame_.scale;
   return errors;

@@ -36,11 +36,11 @@ class SphereMesh {
   // begins with such as are near each other joined (joinNearNodes), which it would merge first. Throws Error kBadData
   // for a mesh without vertices, kLimit for more than 2^30. Cost: O(#V log #V), two to four microseconds a vertex; 0.9
   // kB a vertex while it runs.
-  static SphereMesh build(const TriMesh& mesh, Progress& progress, Index mostStartNodes = kMostStartNodes);
+  static SphereMesh build(const TriMesh& mesh, Progress& progress, Index maxStartNodes = kMaxStartNodes);
 
   Index vertexCount() const { return static_cast<Index>(vertexEnds_.size()); }
   // As many as vertices, but on models of more than mostStartNodes.
-  Index mostSpheres() const { return sequence_.initialCount + static_cast<Index>(loose_.size()); }
+  Index maxSpheres() const { return sequence_.initialCount + static_cast<Index>(loose_.size()); }
   const std::optional<MirrorPlane>& mirror() const { return mirror_; }
 
   // Throws Error kBadArgument unless 1 <= count <= mostSpheres(). Cost: O(count log #V).
@@ -51,7 +51,7 @@ class SphereMesh {
   // How far the surface's tangent planes are from the spheres, root mean square over its area, in units of the mesh,
   // for each count from 0 (infinite) to mostCount. Where two spheres merge at once, the count between has the error of
   // the one above it. Cost: O(mostCount).
-  std::vector<double> errors(Index mostCount) const;
+  std::vector<double> errors(Index maxCount) const;
 
   // The record itself, in the collapse's own space.
   const CollapseSequence& sequence() const { return sequence_; }

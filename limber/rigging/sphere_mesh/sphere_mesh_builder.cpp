@@ -76,8 +76,8 @@ void Starter::measureSurface(const std::vector<VertexPair>& links) {
     for (const Index corner : v) areas[corner] += weights_[t];
   }
   if (!links.empty()) {
-    const std::vector<double> shares = strayShares(points_, areas, surface_.edges, links);
-    for (Index t = 0; t < count; ++t) weights_[t] *= shares[mesh_.triangles[t][0]];
+    const std::vector<double> fractions = strayFractions(points_, areas, surface_.edges, links);
+    for (Index t = 0; t < count; ++t) weights_[t] *= fractions[mesh_.triangles[t][0]];
   }
   const double total = 3 * std::accumulate(weights_.begin(), weights_.end(), 0.0);
   if (!(total > 0)) return;

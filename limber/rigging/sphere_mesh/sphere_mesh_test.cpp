@@ -87,7 +87,7 @@ TEST(SphereMesh, ExactlyAsManySpheresAsAskedForOnEveryKindOfMesh) {
   for (const auto& [name, mesh] : testing::meshCatalogue()) {
     SCOPED_TRACE(name);
     const SphereMesh spheres = sphereMeshOf(mesh);
-    ASSERT_EQ(spheres.mostSpheres(), mesh.vertexCount());
+    ASSERT_EQ(spheres.maxSpheres(), mesh.vertexCount());
     const Index step = std::max<Index>(1, mesh.vertexCount() / 120);
     for (Index count = 1; count <= mesh.vertexCount(); count += count < 60 ? 1 : step)
       expectSound(mesh, spheres, count);
@@ -119,10 +119,10 @@ TEST(SphereMesh, NearVerticesOfALargeModelAreOneFromTheStart) {
   for (int i = 0; i < 4; ++i) cross = testing::subdivided(cross);
   Progress progress;
   const SphereMesh whole = SphereMesh::build(cross, progress), joined = SphereMesh::build(cross, progress, 1000);
-  EXPECT_EQ(whole.mostSpheres(), cross.vertexCount());
-  EXPECT_LE(joined.mostSpheres(), 2000u);  // in pairs
-  EXPECT_GT(joined.mostSpheres(), 500u);
-  for (const Index count : {1u, 2u, 17u, 100u, joined.mostSpheres()}) {
+  EXPECT_EQ(whole.maxSpheres(), cross.vertexCount());
+  EXPECT_LE(joined.maxSpheres(), 2000u);  // in pairs
+  EXPECT_GT(joined.maxSpheres(), 500u);
+  for (const Index count : {1u, 2u, 17u, 100u, joined.maxSpheres()}) {
     expectSound(cross, joined, count);
     expectMirrored(joined, count);
   }
@@ -136,7 +136,7 @@ TEST(SphereMesh, JoiningNearVerticesCostsLittle) {
   }
   Progress progress;
   const SphereMesh whole = SphereMesh::build(hills, progress), joined = SphereMesh::build(hills, progress, 4000);
-  EXPECT_LE(joined.mostSpheres(), 4000u);
+  EXPECT_LE(joined.maxSpheres(), 4000u);
   const std::vector<double> expected = whole.errors(50), errors = joined.errors(50);
   double sum = 0, expectedSum = 0;
   for (Index count = 1; count <= 50; ++count) {

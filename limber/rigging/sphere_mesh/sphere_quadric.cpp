@@ -46,7 +46,7 @@ struct Factor {
   }
 };
 
-double leastError(const double* terms) {
+double minError(const double* terms) {
   const Factor f(terms);
   double error = terms[14] - f.y0 * f.y0 * f.inverse0 - f.y1 * f.y1 * f.inverse1 - f.y2 * f.y2 * f.inverse2;
   if (f.y3 > 0) error -= f.y3 * f.y3 * f.inverse3;
@@ -109,13 +109,13 @@ double SphereQuadric::error(const Sphere& sphere) const {
 }
 
 double SphereQuadric::minimumError() const {
-  return leastError(terms);
+  return minError(terms);
 }
 
 double SphereQuadric::jointMinimumError(const SphereQuadric& a, const SphereQuadric& b) {
   double sum[kTerms];
   for (int i = 0; i < kTerms; ++i) sum[i] = a.terms[i] + b.terms[i];
-  return leastError(sum);
+  return minError(sum);
 }
 
 Sphere SphereQuadric::minimum() const {

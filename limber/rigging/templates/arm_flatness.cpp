@@ -30,17 +30,17 @@ double flatnessOf(const BodySection& section) {
 
 }  // namespace
 
-double armFlatness(const TemplateSkeleton& skeleton, const std::vector<Vec3>& places, const BodyVolume& body,
+double armFlatness(const TemplateSkeleton& skeleton, const std::vector<Vec3>& positions, const BodyVolume& body,
                    const AnatomicalFrame& frame) {
   double least = std::numeric_limits<double>::infinity();
   for (const std::string side : {"left", "right"}) {
     for (const auto& [from, to] : {std::pair("UpperArm", "LowerArm"), std::pair("LowerArm", "Hand")}) {
       const std::optional<Index> start = skeleton.find(side + from), end = skeleton.find(side + to);
       if (!start || !end) return 1;
-      const Vec3 bone = places[*end] - places[*start];
+      const Vec3 bone = positions[*end] - positions[*start];
       if (!(bone.norm() > 1e-6)) return 1;
       const BodySection cut =
-          sectionAt(body, frame, 0.5 * (places[*start] + places[*end]), bone.normalized(), kArmSeedReach);
+          sectionAt(body, frame, 0.5 * (positions[*start] + positions[*end]), bone.normalized(), kArmSeedReach);
       if (cut.empty()) return 1;
       least = std::min(least, flatnessOf(cut));
     }

@@ -9,24 +9,24 @@ namespace limber {
 namespace {
 
 // The humanoid with the arms of the capsule person.
-std::vector<Vec3> placesIn(const testing::CapsulePerson& shape, const AnatomicalFrame& frame) {
+std::vector<Vec3> positionsIn(const testing::CapsulePerson& shape, const AnatomicalFrame& frame) {
   const TemplateSkeleton& skeleton = findTemplate("humanoid");
-  std::vector<Vec3> places;
-  for (const TemplateJoint& joint : skeleton.joints) places.push_back(joint.place);
-  for (const auto& [name, place] :
+  std::vector<Vec3> positions;
+  for (const TemplateJoint& joint : skeleton.joints) positions.push_back(joint.position);
+  for (const auto& [name, position] :
        {std::pair("UpperArm", shape.shoulder), std::pair("LowerArm", shape.elbow), std::pair("Hand", shape.hand)}) {
-    const Vec3 left = frame.toBody(place);
-    places[*skeleton.find(std::string("left") + name)] = left;
-    places[*skeleton.find(std::string("right") + name)] = left.cwiseProduct(Vec3(-1, 1, 1));
+    const Vec3 left = frame.toBody(position);
+    positions[*skeleton.find(std::string("left") + name)] = left;
+    positions[*skeleton.find(std::string("right") + name)] = left.cwiseProduct(Vec3(-1, 1, 1));
   }
-  return places;
+  return positions;
 }
 
 }  // namespace
 
 TEST(ArmFlatness, ArmsAreRound) {
   const testing::MeasuredPerson& person = testing::measuredPerson();
-  EXPECT_LT(armFlatness(findTemplate("humanoid"), placesIn(person.shape, person.frame), person.body, person.frame),
+  EXPECT_LT(armFlatness(findTemplate("humanoid"), positionsIn(person.shape, person.frame), person.body, person.frame),
             1.5);
 }
 
@@ -39,7 +39,7 @@ TEST(ArmFlatness, WingsAreNot) {
   }
   const BodyVolume body = measureBody(winged.mesh);
   const AnatomicalFrame frame = frameAlong(winged.mesh, body, Vec3::UnitY(), Vec3::UnitZ());
-  EXPECT_GT(armFlatness(findTemplate("humanoid"), placesIn(winged, frame), body, frame), 4);
+  EXPECT_GT(armFlatness(findTemplate("humanoid"), positionsIn(winged, frame), body, frame), 4);
 }
 
 TEST(ArmFlatness, IsOneWithoutArms) {
@@ -47,9 +47,9 @@ TEST(ArmFlatness, IsOneWithoutArms) {
   const TemplateSkeleton& bird = findTemplate("bird");
   EXPECT_EQ(armFlatness(bird, std::vector<Vec3>(bird.joints.size()), person.body, person.frame), 1);
   // Arms beside the body.
-  std::vector<Vec3> places = placesIn(person.shape, person.frame);
-  for (Vec3& place : places) place.y() += 2;
-  EXPECT_EQ(armFlatness(findTemplate("humanoid"), places, person.body, person.frame), 1);
+  std::vector<Vec3> positions = positionsIn(person.shape, person.frame);
+  for (Vec3& position : positions) position.y() += 2;
+  EXPECT_EQ(armFlatness(findTemplate("humanoid"), positions, person.body, person.frame), 1);
 }
 
 }  // namespace limber

@@ -16,21 +16,21 @@ constexpr double kGrid = 1.0 / 8192;  // heights
 constexpr Index kRestarts = 2;
 constexpr double kNearRest = 0.05;  // gain towards the standing pose
 
-std::vector<Vec3> standingPlaces(const TemplateSkeleton& skeleton) {
+std::vector<Vec3> standingPositions(const TemplateSkeleton& skeleton) {
   if (skeleton.bent()) return skeleton.standing;
-  std::vector<Vec3> places;
-  for (const TemplateJoint& joint : skeleton.joints) places.push_back(joint.place);
-  return places;
+  std::vector<Vec3> positions;
+  for (const TemplateJoint& joint : skeleton.joints) positions.push_back(joint.position);
+  return positions;
 }
 
-Skeleton skeletonOf(const TemplateSkeleton& from, const std::vector<Vec3>& places, double size) {
+Skeleton skeletonOf(const TemplateSkeleton& from, const std::vector<Vec3>& positions, double size) {
   Skeleton skeleton;
   for (Index j = 0; j < from.jointCount(); ++j) {
     Joint joint;
     joint.name = from.joints[j].name;
     joint.parent = from.joints[j].parent;
-    joint.rest.translation = size * places[j];
-    if (joint.parent) joint.rest.translation -= size * places[*joint.parent];
+    joint.rest.translation = size * positions[j];
+    if (joint.parent) joint.rest.translation -= size * positions[*joint.parent];
     skeleton.joints.push_back(std::move(joint));
   }
   return skeleton;
@@ -39,19 +39,19 @@ Skeleton skeletonOf(const TemplateSkeleton& from, const std::vector<Vec3>& place
 std::vector<IkTarget> ikTargets(const TemplateSkeleton& skeleton, std::span<const BendTarget> targets) {
   TemplatePins firm(skeleton.jointCount());
   for (const BendTarget& target : targets) {
-    if (target.firm) firm[target.joint] = target.place;
+    if (target.firm) firm[target.joint] = target.position;
   }
   const bool even = pinnedEvenly(skeleton, firm);
   std::vector<IkTarget> result;
   for (const BendTarget& from : targets) {
     IkTarget target;
     target.joint = from.joint;
-    target.position = from.place;
+    target.position = from.position;
     target.priority = from.firm ? 0 : 1;
     // To the last bit: even targets have even answers.
     if (from.firm && even) {
       const Vec3 other = firm[skeleton.joints[from.joint].mirror.value_or(from.joint)]->cwiseProduct(Vec3(-1, 1, 1));
-      target.position = 0.5 * (from.place + other);
+      target.position = 0.5 * (from.position + other);
     }
     result.push_back(std::move(target));
   }
@@ -73,7 +73,7 @@ double meanTurn(const TemplateSkeleton& skeleton) {
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
     if (!skeleton.joints[j].parent) continue;
     const Index parent = *skeleton.joints[j].parent;
-    const Vec3 bone = skeleton.joints[j].place - skeleton.joints[parent].place,
+    const Vec3 bone = skeleton.joints[j].position - skeleton.joints[parent].position,
                standing = skeleton.standing[j] - skeleton.standing[parent];
     turn += 1 - bone.normalized().dot(standing.normalized());
     ++bones;
@@ -85,7 +85,7 @@ double meanTurn(const TemplateSkeleton& skeleton) {
 
 TemplateVariant bentTemplate(const TemplateSkeleton& skeleton, std::span<const BendTarget> targets, double size) {
   TemplateVariant variant = {skeleton, kBentCost};
-  variant.skeleton.standing = standingPlaces(skeleton);
+  variant.skeleton.standing = standingPositions(skeleton);
   const Skeleton standing = skeletonOf(skeleton, variant.skeleton.standing, size);
   const JointLimits limits = humanoidLimits(standing, jointsCalledAsBones(standing));
   const std::vector<IkTarget> wanted = ikTargets(skeleton, targets);
@@ -99,7 +99,7 @@ TemplateVariant bentTemplate(const TemplateSkeleton& skeleton, std::span<const B
   const std::vector<Affine> globals = poseGlobals(standing, pose);
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
     // On a grid: sines differ in their last bits between machines' libraries, rigs must not.
-    variant.skeleton.joints[j].place = (globals[j].translation() / kGrid).array().round().matrix() * kGrid;
+    variant.skeleton.joints[j].position = (globals[j].translation() / kGrid).array().round().matrix() * kGrid;
   }
   variant.cost += kTurnedCost * meanTurn(variant.skeleton);
   return variant;
@@ -111,7 +111,7 @@ double sizeOf(const TemplateSkeleton& skeleton) {
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
     if (!skeleton.joints[j].parent) continue;
     const Index parent = *skeleton.joints[j].parent;
-    bones += (skeleton.joints[j].place - skeleton.joints[parent].place).norm();
+    bones += (skeleton.joints[j].position - skeleton.joints[parent].position).norm();
     standing += (skeleton.standing[j] - skeleton.standing[parent]).norm();
   }
   return standing > 0 ? bones / standing : 1;

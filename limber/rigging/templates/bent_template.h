@@ -12,7 +12,7 @@ namespace limber {
 // Where a joint shall be; firm ones come first, the others as near as these allow.
 struct BendTarget {
   Index joint = 0;
-  Vec3 place = Vec3::Zero();  // body space
+  Vec3 position = Vec3::Zero();  // body space
   bool firm = true;
 };
 

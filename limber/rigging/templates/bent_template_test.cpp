@@ -21,8 +21,8 @@ TEST(BentTemplate, BringsJointsToTheirPins) {
     double nearest = 1;
     for (const TemplateVariant& variant : bentToPins(skeleton, pins)) {
       EXPECT_TRUE(variant.skeleton.bent());
-      const double off = (variant.skeleton.joints[head].place - *pins[head]).norm() +
-                         (variant.skeleton.joints[hips].place - *pins[hips]).norm();
+      const double off = (variant.skeleton.joints[head].position - *pins[head]).norm() +
+                         (variant.skeleton.joints[hips].position - *pins[hips]).norm();
       nearest = std::min(nearest, off);
     }
     EXPECT_LT(nearest, 0.01) << name;

@@ -14,7 +14,7 @@ namespace {
 // People and statues of people match by 8 to 10.5, anything else by less than 6.
 constexpr double kMatchOfDoubt = 6.6, kMatchSpread = 1.2, kCostOfDoubt = 1.8;
 constexpr double kFitGrid = 1.0 / 8192;  // heights
-constexpr double kLeastLimb = 0.1;       // match of a limb that has a place
+constexpr double kMinLimb = 0.1;         // match of a limb that has a place
 
 constexpr std::array<std::array<const char*, 4>, kFigureLimbs> kLimbJoints = {
     {{"leftUpperArm", "leftLowerArm", "leftHand", "leftHandTip"},
@@ -24,7 +24,7 @@ constexpr std::array<std::array<const char*, 4>, kFigureLimbs> kLimbJoints = {
 constexpr std::array<const char*, 5> kTrunkJoints = {"hips", "upperChest", "neck", "head", "headTip"};
 
 // In the order of kTrunkJoints, where people have them.
-std::array<Vec3, 5> trunkPlaces(const Figure& figure) {
+std::array<Vec3, 5> trunkPositions(const Figure& figure) {
   return {figure.pelvisJoint(), figure.waist() + 0.4 * (figure.neckBase() - figure.waist()), figure.neckJoint(),
           figure.skullBase(), figure.head - 1.1 * figure.headRadius * figure.neck};
 }
@@ -56,10 +56,10 @@ bool isHumanoid(const TemplateSkeleton& skeleton) {
 std::vector<FigurePin> figurePins(const TemplateSkeleton& skeleton, const TemplatePins& pins,
                                   const AnatomicalFrame& frame) {
   using Part = FigurePin::Joint;
-  std::vector<FigurePin> told;
+  std::vector<FigurePin> pinned;
   const auto tell = [&](const char* name, Part joint, int limb) {
     const std::optional<Vec3>& pin = pins[skeleton.find(name).value()];
-    if (pin) told.push_back({joint, limb, frame.fromBody(*pin)});
+    if (pin) pinned.push_back({joint, limb, frame.fromBody(*pin)});
   };
   tell("head", Part::kHead, 0);
   tell("neck", Part::kNeck, 0);
@@ -68,7 +68,7 @@ std::vector<FigurePin> figurePins(const TemplateSkeleton& skeleton, const Templa
   for (int limb = 0; limb < kFigureLimbs; ++limb) {
     for (std::size_t j = 0; j < kLimbJoints[limb].size(); ++j) tell(kLimbJoints[limb][j], kInOrder[j], limb);
   }
-  return told;
+  return pinned;
 }
 
 TemplateFit fitOfFigure(const TemplateSkeleton& skeleton, const MatchedFigure& figure, const TemplatePins& pins,
@@ -76,44 +76,45 @@ TemplateFit fitOfFigure(const TemplateSkeleton& skeleton, const MatchedFigure& f
   const Index count = skeleton.jointCount();
   TemplateFit fit;
   fit.skeleton = skeleton;
-  for (const TemplateJoint& joint : skeleton.joints) fit.skeleton.standing.push_back(joint.place);
+  for (const TemplateJoint& joint : skeleton.joints) fit.skeleton.standing.push_back(joint.position);
   fit.frame = frameOf(figure.figure, frame);
   fit.pins.resize(count);
-  std::vector<Vec3>& places = fit.embedding.places;
-  places.assign(count, Vec3::Zero());
+  std::vector<Vec3>& positions = fit.embedding.positions;
+  positions.assign(count, Vec3::Zero());
   fit.embedding.costs.assign(count, 0.0);
-  const auto put = [&](const char* joint, const Vec3& place) {
+  const auto put = [&](const char* joint, const Vec3& position) {
     // On a grid: sines differ in their last bits between machines' libraries, rigs must not.
-    places[skeleton.find(joint).value()] = (fit.frame.toBody(place) / kFitGrid).array().round().matrix() * kFitGrid;
+    positions[skeleton.find(joint).value()] =
+        (fit.frame.toBody(position) / kFitGrid).array().round().matrix() * kFitGrid;
   };
-  const std::array<Vec3, 5> trunk = trunkPlaces(figure.figure);
+  const std::array<Vec3, 5> trunk = trunkPositions(figure.figure);
   for (std::size_t j = 0; j < trunk.size(); ++j) put(kTrunkJoints[j], trunk[j]);
   for (int limb = 0; limb < kFigureLimbs; ++limb) {
-    const FigureLimbPlaces of = figure.figure.places(limb);
+    const LimbPositions of = figure.figure.positions(limb);
     const std::array<Vec3, 4> inOrder = {of.root, of.middle, of.ankle, of.tip};
     for (std::size_t j = 0; j < inOrder.size(); ++j) put(kLimbJoints[limb][j], inOrder[j]);
   }
-  placeBetween(skeleton, places);
+  placeBetween(skeleton, positions);
   for (Index j = 0; j < count; ++j) {
     if (!pins[j]) continue;
     fit.pins[j] = fit.frame.toBody(frame.fromBody(*pins[j]));
-    const Vec3 moved = *fit.pins[j] - places[j];
-    places[j] = *fit.pins[j];
+    const Vec3 moved = *fit.pins[j] - positions[j];
+    positions[j] = *fit.pins[j];
     // Ends go along, and the legs with the hips.
     for (Index other = 0; other < count; ++other) {
       const bool isEnd = skeleton.joints[other].role == TemplateRole::kTip;
       const bool isLegOfHips = !skeleton.joints[j].parent && skeleton.joints[other].mirror;
       if (pins[other] || !(isEnd || isLegOfHips)) continue;
-      if (placedAbove(skeleton, other) == j) places[other] += moved;
+      if (placedAbove(skeleton, other) == j) positions[other] += moved;
     }
   }
-  for (Index j = 0; j < count; ++j) fit.skeleton.joints[j].place = places[j];
+  for (Index j = 0; j < count; ++j) fit.skeleton.joints[j].position = positions[j];
   fit.limbs = limbChains(fit.skeleton);
   for (TemplateLimb& chain : fit.limbs) {
     for (int limb = 0; limb < kFigureLimbs; ++limb) {
       const Index root = *skeleton.find(kLimbJoints[limb][0]);
       const bool isIt = std::find(chain.joints.begin(), chain.joints.end(), root) != chain.joints.end();
-      if (isIt) chain.hasPlace = figure.limbs[limb] > kLeastLimb;
+      if (isIt) chain.hasMatch = figure.limbs[limb] > kMinLimb;
     }
   }
   fit.cost = kCostOfDoubt * std::exp((kMatchOfDoubt - figure.total) / kMatchSpread);

@@ -23,12 +23,12 @@ struct Crouching {
   }
 };
 
-Vec3 placeOf(const TemplateFit& fit, const char* joint) {
-  return fit.frame.fromBody(fit.embedding.places[fit.skeleton.find(joint).value()]);
+Vec3 positionOf(const TemplateFit& fit, const char* joint) {
+  return fit.frame.fromBody(fit.embedding.positions[fit.skeleton.find(joint).value()]);
 }
 
-double off(const TemplateFit& fit, const char* joint, const Vec3& place) {
-  return (placeOf(fit, joint) - place).norm();
+double off(const TemplateFit& fit, const char* joint, const Vec3& position) {
+  return (positionOf(fit, joint) - position).norm();
 }
 
 TemplatePins noPins(const TemplateSkeleton& skeleton) {
@@ -37,7 +37,7 @@ TemplatePins noPins(const TemplateSkeleton& skeleton) {
 
 std::size_t missing(const TemplateFit& fit) {
   return static_cast<std::size_t>(
-      std::count_if(fit.limbs.begin(), fit.limbs.end(), [](const TemplateLimb& limb) { return !limb.hasPlace; }));
+      std::count_if(fit.limbs.begin(), fit.limbs.end(), [](const TemplateLimb& limb) { return !limb.hasMatch; }));
 }
 
 }  // namespace
@@ -55,15 +55,15 @@ TEST(FigureFit, JointsStandInTheFigure) {
     const TemplateSkeleton& skeleton = findTemplate(name);
     const TemplateFit fit = fitOfFigure(skeleton, person.figure, noPins(skeleton), person.frame);
     const Figure& figure = person.figure.figure;
-    EXPECT_LT(off(fit, "leftLowerArm", figure.places(0).middle), 1e-4);
-    EXPECT_LT(off(fit, "rightHand", figure.places(1).ankle), 1e-4);
-    EXPECT_LT(off(fit, "leftUpperLeg", figure.places(2).root), 1e-4);
-    EXPECT_LT(off(fit, "rightFoot", figure.places(3).ankle), 1e-4);
+    EXPECT_LT(off(fit, "leftLowerArm", figure.positions(0).middle), 1e-4);
+    EXPECT_LT(off(fit, "rightHand", figure.positions(1).ankle), 1e-4);
+    EXPECT_LT(off(fit, "leftUpperLeg", figure.positions(2).root), 1e-4);
+    EXPECT_LT(off(fit, "rightFoot", figure.positions(3).ankle), 1e-4);
     EXPECT_LT(off(fit, "hips", figure.hips()), 0.02);
     EXPECT_TRUE(fit.skeleton.bent());
     EXPECT_EQ(missing(fit), 0u);
     // Joints between lie on the way.
-    const double toes = off(fit, "leftToes", figure.places(2).ankle);
+    const double toes = off(fit, "leftToes", figure.positions(2).ankle);
     EXPECT_GT(toes, 0.02);
     EXPECT_LT(toes, proportions::kFoot);
   }
@@ -92,18 +92,18 @@ TEST(FigureFit, BetterMatchesCostLessAndLimbsThatHardlyMatchHaveNoPlace) {
   person.figure.limbs[1] = 0;
   const TemplateFit doubtful = fitOfFigure(skeleton, person.figure, noPins(skeleton), person.frame);
   EXPECT_GT(doubtful.cost, 2 * sure);
-  EXPECT_EQ(limbsWithoutPlace(doubtful.skeleton, doubtful.limbs), "rightShoulder to rightHand");
+  EXPECT_EQ(unmatchedLimbs(doubtful.skeleton, doubtful.limbs), "rightShoulder to rightHand");
 }
 
 TEST(FigureFit, PinnedJointsStandWhereTheyArePinnedAndEndsGoAlong) {
   const Crouching person;
   const TemplateSkeleton& skeleton = findTemplate("humanoid");
   TemplatePins pins = noPins(skeleton);
-  const Vec3 hand = person.figure.figure.places(0).ankle + Vec3(0.05, 0.02, 0);
+  const Vec3 hand = person.figure.figure.positions(0).ankle + Vec3(0.05, 0.02, 0);
   pins[skeleton.find("leftHand").value()] = person.frame.toBody(hand);
   const TemplateFit fit = fitOfFigure(skeleton, person.figure, pins, person.frame);
   EXPECT_LT(off(fit, "leftHand", hand), 1e-9);
-  EXPECT_LT(off(fit, "leftHandTip", person.figure.figure.places(0).tip + Vec3(0.05, 0.02, 0)), 1e-3);
+  EXPECT_LT(off(fit, "leftHandTip", person.figure.figure.positions(0).tip + Vec3(0.05, 0.02, 0)), 1e-3);
   EXPECT_TRUE(fit.pins[skeleton.find("leftHand").value()]);
 }
 
@@ -114,12 +114,12 @@ TEST(FigureFit, TellsAFigureOfThePinsItKnows) {
   for (const char* joint : {"head", "rightLowerLeg", "leftToes"}) {
     pins[skeleton.find(joint).value()] = person.frame.toBody(Vec3(1, 2, 3));
   }
-  const std::vector<FigurePin> told = figurePins(skeleton, pins, person.frame);
-  ASSERT_EQ(told.size(), 2u);
-  EXPECT_EQ(told[0].joint, FigurePin::Joint::kHead);
-  EXPECT_EQ(told[1].joint, FigurePin::Joint::kMiddle);
-  EXPECT_EQ(told[1].limb, 3);
-  EXPECT_LT((told[1].place - Vec3(1, 2, 3)).norm(), 1e-9);
+  const std::vector<FigurePin> pinned = figurePins(skeleton, pins, person.frame);
+  ASSERT_EQ(pinned.size(), 2u);
+  EXPECT_EQ(pinned[0].joint, FigurePin::Joint::kHead);
+  EXPECT_EQ(pinned[1].joint, FigurePin::Joint::kMiddle);
+  EXPECT_EQ(pinned[1].limb, 3);
+  EXPECT_LT((pinned[1].position - Vec3(1, 2, 3)).norm(), 1e-9);
 }
 
 }  // namespace limber

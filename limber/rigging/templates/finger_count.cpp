@@ -19,8 +19,8 @@ using Edge = std::pair<Index, Index>;
 // Where a plane cuts triangles, by the edges that it cuts: those of one triangle belong together.
 class Cut {
  public:
-  void add(const Edge& edge, const Vec3& place, const Edge& other, const Vec3& otherPlace) {
-    unite(idOf(edge, place), idOf(other, otherPlace));
+  void add(const Edge& edge, const Vec3& position, const Edge& other, const Vec3& otherPosition) {
+    unite(idOf(edge, position), idOf(other, otherPosition));
   }
 
   struct Part {
@@ -31,12 +31,12 @@ class Cut {
   // What hangs together; pieces of a model that lie in one another count once.
   std::vector<Part> parts() const {
     std::map<std::size_t, std::vector<Vec3>> together;
-    for (std::size_t i = 0; i < places_.size(); ++i) together[root(i)].push_back(places_[i]);
+    for (std::size_t i = 0; i < positions_.size(); ++i) together[root(i)].push_back(positions_[i]);
     std::vector<Part> parts;
-    for (const auto& [first, places] : together) {
+    for (const auto& [first, positions] : together) {
       Part part;
-      for (const Vec3& place : places) part.middle += place / static_cast<double>(places.size());
-      for (const Vec3& place : places) part.halfWidth = std::max(part.halfWidth, (place - part.middle).norm());
+      for (const Vec3& position : positions) part.middle += position / static_cast<double>(positions.size());
+      for (const Vec3& position : positions) part.halfWidth = std::max(part.halfWidth, (position - part.middle).norm());
       parts.push_back(part);
     }
     std::stable_sort(parts.begin(), parts.end(),
@@ -50,10 +50,10 @@ class Cut {
   }
 
  private:
-  std::size_t idOf(const Edge& edge, const Vec3& place) {
-    const auto [entry, isNew] = ids_.try_emplace(edge, places_.size());
+  std::size_t idOf(const Edge& edge, const Vec3& position) {
+    const auto [entry, isNew] = ids_.try_emplace(edge, positions_.size());
     if (isNew) {
-      places_.push_back(place);
+      positions_.push_back(position);
       above_.push_back(entry->second);
     }
     return entry->second;
@@ -65,7 +65,7 @@ class Cut {
   void unite(std::size_t a, std::size_t b) { above_[root(a)] = root(b); }
 
   std::map<Edge, std::size_t> ids_;
-  std::vector<Vec3> places_;
+  std::vector<Vec3> positions_;
   std::vector<std::size_t> above_;
 };
 
@@ -90,8 +90,8 @@ std::size_t countFingers(const TriMesh& mesh, const Vec3& hand, const Vec3& tip)
         const Index a = std::min(t[i], t[(i + 1) % 3]), b = std::max(t[i], t[(i + 1) % 3]);
         const double first = along(a) - at, second = along(b) - at;
         if ((first > 0) == (second > 0)) continue;
-        const Vec3 place = mesh.position(a) + first / (first - second) * (mesh.position(b) - mesh.position(a));
-        crossed.emplace_back(Edge(a, b), place);
+        const Vec3 position = mesh.position(a) + first / (first - second) * (mesh.position(b) - mesh.position(a));
+        crossed.emplace_back(Edge(a, b), position);
       }
       if (crossed.size() == 2) cut.add(crossed[0].first, crossed[0].second, crossed[1].first, crossed[1].second);
     }

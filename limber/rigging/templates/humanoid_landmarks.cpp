@@ -15,7 +15,7 @@ namespace {
 // Heights, but for shares.
 constexpr double kSeedReach = 0.04;
 constexpr double kWidestArm = 0.03;  // square heights of a cut
-constexpr double kMostMoved = 0.06;
+constexpr double kMaxMoved = 0.06;
 constexpr double kUpright = 0.85;      // least cosine
 constexpr double kLifted = 0.12;       // of a foot that does not stand
 constexpr double kWristSearch = 0.2;   // of the arm's length, to both sides
@@ -64,39 +64,41 @@ std::optional<HumanoidJoints> humanoidJointsOf(const TemplateSkeleton& skeleton)
 class HumanoidMover {
  public:
   HumanoidMover(const BodyVolume& body, const AnatomicalFrame& frame, const std::vector<std::optional<Vec3>>& pins,
-                std::vector<Vec3>& places, const HumanoidProportions& proportions)
-      : body_(body), frame_(frame), pins_(pins), places_(places), proportions_(proportions) {}
+                std::vector<Vec3>& positions, const HumanoidProportions& proportions)
+      : body_(body), frame_(frame), pins_(pins), positions_(positions), proportions_(proportions) {}
 
-  bool isUpright(Index low, Index high) const { return (places_[high] - places_[low]).normalized().y() > kUpright; }
+  bool isUpright(Index low, Index high) const {
+    return (positions_[high] - positions_[low]).normalized().y() > kUpright;
+  }
 
   // Whether cuts at rising heights follow both legs from the ground.
-  bool standsOn(const std::array<LegChain, 2>& legs) const {
+  bool restsOn(const std::array<LegChain, 2>& legs) const {
     return std::all_of(legs.begin(), legs.end(), [&](const LegChain& leg) {
-      return isUpright(leg.ankle, leg.knee) && isUpright(leg.knee, leg.hip) && places_[leg.ankle].y() < kLifted;
+      return isUpright(leg.ankle, leg.knee) && isUpright(leg.knee, leg.hip) && positions_[leg.ankle].y() < kLifted;
     });
   }
 
   void legs(const HumanoidJoints& joints) {
-    LegFinder finder(body_, frame_, places_, joints.legs[0], joints.legs[1]);
+    LegFinder finder(body_, frame_, positions_, joints.legs[0], joints.legs[1]);
     const bool parted = finder.findParting();
     if (!finder.known()) return;
     for (int side = 0; side < 2; ++side) {
       const LegChain& leg = joints.legs[side];
-      double hipY = places_[leg.hip].y();
+      double hipY = positions_[leg.hip].y();
       if (parted) {
         hipY = finder.parting() + proportions_.hipAboveParting * finder.halfWidth(side);
         moveTo(leg.hip, finder.middle(side, hipY));
-      } else if (const Vec3 middle = finder.middle(side, hipY); (middle - places_[leg.hip]).norm() < kMostMoved) {
+      } else if (const Vec3 middle = finder.middle(side, hipY); (middle - positions_[leg.hip]).norm() < kMaxMoved) {
         moveTo(leg.hip, middle);
       }
-      const double ankleY = proportions_.ankle + proportions_.ankleShare * hipY;
+      const double ankleY = proportions_.ankle + proportions_.ankleFraction * hipY;
       moveTo(leg.ankle, finder.middle(side, ankleY));
       Vec3 knee = finder.middle(side, hipY + proportions_.knee * (ankleY - hipY));
       knee.z() += proportions_.kneeForward * finder.halfDepth(side, knee.y());
       moveTo(leg.knee, knee);
     }
-    const Vec3 between = 0.5 * (places_[joints.legs[0].hip] + places_[joints.legs[1].hip]);
-    if (parted) moveTo(joints.hips, {places_[joints.hips].x(), between.y() - proportions_.hipsBelow, between.z()});
+    const Vec3 between = 0.5 * (positions_[joints.legs[0].hip] + positions_[joints.legs[1].hip]);
+    if (parted) moveTo(joints.hips, {positions_[joints.hips].x(), between.y() - proportions_.hipsBelow, between.z()});
   }
 
   // Both arms are as long as the longer: what a hand holds rather keeps an embedding from the hand than draws it
@@ -106,24 +108,24 @@ class HumanoidMover {
     for (int side = 0; side < 2; ++side) {
       const Arm& arm = arms[side];
       if (pins_[arm.shoulder] || pins_[arm.elbow] || pins_[arm.hand]) return;
-      lengths[side] =
-          (places_[arm.elbow] - places_[arm.shoulder]).norm() + (places_[arm.hand] - places_[arm.elbow]).norm();
+      lengths[side] = (positions_[arm.elbow] - positions_[arm.shoulder]).norm() +
+                      (positions_[arm.hand] - positions_[arm.elbow]).norm();
     }
     const int side = lengths[0] < lengths[1] ? 0 : 1;
     if (!(lengths[side] > 1e-3)) return;
     const double stretch = lengths[1 - side] / lengths[side];
-    const Vec3 shoulder = places_[arms[side].shoulder];
+    const Vec3 shoulder = positions_[arms[side].shoulder];
     for (const Index joint : {arms[side].elbow, arms[side].hand}) {
-      places_[joint] = shoulder + stretch * (places_[joint] - shoulder);
+      positions_[joint] = shoulder + stretch * (positions_[joint] - shoulder);
     }
   }
 
   // Elbow and hand go to the middle of the arm and along it to where it shows them; the shoulder goes on in the
   // direction of the upper arm.
   void arm(const Arm& arm) {
-    const Vec3 shoulder = places_[arm.shoulder], below = (places_[arm.hand] - places_[arm.elbow]).normalized();
-    const Vec3 along = (places_[arm.elbow] - shoulder).normalized();
-    Vec3 elbow = places_[arm.elbow], hand = places_[arm.hand];
+    const Vec3 shoulder = positions_[arm.shoulder], below = (positions_[arm.hand] - positions_[arm.elbow]).normalized();
+    const Vec3 along = (positions_[arm.elbow] - shoulder).normalized();
+    Vec3 elbow = positions_[arm.elbow], hand = positions_[arm.hand];
     if (const auto middle = middleAt(hand, below)) hand = *middle;
     if (const auto middle = middleAt(elbow, (along + below).normalized())) elbow = *middle;
     const ArmFinder finder(body_, frame_, shoulder, elbow, hand);
@@ -150,17 +152,17 @@ class HumanoidMover {
   }
 
   void trunk(const HumanoidJoints& joints) {
-    const double shoulders = 0.5 * (places_[joints.arms[0].shoulder].y() + places_[joints.arms[1].shoulder].y());
-    Vec3 neck = places_[joints.neck], head = places_[joints.head], chest = places_[joints.upperChest];
-    const double hips = places_[joints.hips].y();
+    const double shoulders = 0.5 * (positions_[joints.arms[0].shoulder].y() + positions_[joints.arms[1].shoulder].y());
+    Vec3 neck = positions_[joints.neck], head = positions_[joints.head], chest = positions_[joints.upperChest];
+    const double hips = positions_[joints.hips].y();
     neck.y() = shoulders + proportions_.neckAboveShoulders;
     head.y() = neck.y() + proportions_.headAboveNeck;
     chest.y() = hips + proportions_.upperChest * (neck.y() - hips);
-    for (Vec3* place : {&chest, &neck}) {
-      const BodySection section = sectionAt(body_, frame_, *place, Vec3::UnitY(), kSeedReach);
+    for (Vec3* position : {&chest, &neck}) {
+      const BodySection section = sectionAt(body_, frame_, *position, Vec3::UnitY(), kSeedReach);
       if (section.empty()) continue;
-      place->z() = section.center.z();
-      if (place == &chest) chest.z() -= proportions_.chestBack * section.halfDepth();
+      position->z() = section.center.z();
+      if (position == &chest) chest.z() -= proportions_.chestBack * section.halfDepth();
     }
     head.z() = 0.5 * (head.z() + neck.z());
     moveTo(joints.upperChest, chest);
@@ -170,23 +172,23 @@ class HumanoidMover {
 
  private:
   // The tip goes along where it would no longer be well beyond the hand in the direction of the forearm.
-  void moveHand(const Arm& arm, const Vec3& place, const Vec3& forearm) {
+  void moveHand(const Arm& arm, const Vec3& position, const Vec3& forearm) {
     const Vec3 before = embedded_[arm.hand];
-    moveTo(arm.hand, place);
+    moveTo(arm.hand, position);
     if (!arm.tip) return;
-    const Vec3 moved = places_[arm.hand] - before;
-    const double was = (places_[*arm.tip] - before).dot(forearm);
-    if (moved.dot(forearm) > 0.5 * was) moveTo(*arm.tip, places_[*arm.tip] + moved);
+    const Vec3 moved = positions_[arm.hand] - before;
+    const double was = (positions_[*arm.tip] - before).dot(forearm);
+    if (moved.dot(forearm) > 0.5 * was) moveTo(*arm.tip, positions_[*arm.tip] + moved);
   }
 
-  void moveTo(Index joint, const Vec3& place) {
-    if (!pins_[joint]) places_[joint] = place;
+  void moveTo(Index joint, const Vec3& position) {
+    if (!pins_[joint]) positions_[joint] = position;
   }
 
   // None where the cut goes through more than an arm.
-  std::optional<Vec3> middleAt(const Vec3& place, const Vec3& normal) const {
-    const BodySection section = sectionAt(body_, frame_, place, normal, kSeedReach);
-    if (section.empty() || section.area > kWidestArm || (section.center - place).norm() > kMostMoved)
+  std::optional<Vec3> middleAt(const Vec3& position, const Vec3& normal) const {
+    const BodySection section = sectionAt(body_, frame_, position, normal, kSeedReach);
+    if (section.empty() || section.area > kWidestArm || (section.center - position).norm() > kMaxMoved)
       return std::nullopt;
     return section.center;
   }
@@ -194,19 +196,19 @@ class HumanoidMover {
   const BodyVolume& body_;
   const AnatomicalFrame& frame_;
   const std::vector<std::optional<Vec3>>& pins_;
-  std::vector<Vec3>& places_;
-  const std::vector<Vec3> embedded_ = places_;  // as it was before anything moved
+  std::vector<Vec3>& positions_;
+  const std::vector<Vec3> embedded_ = positions_;  // as it was before anything moved
   const HumanoidProportions& proportions_;
 };
 
 }  // namespace
 
 void refineHumanoid(const TemplateSkeleton& skeleton, const BodyVolume& body, const AnatomicalFrame& frame,
-                    const std::vector<std::optional<Vec3>>& pins, std::vector<Vec3>& places,
+                    const std::vector<std::optional<Vec3>>& pins, std::vector<Vec3>& positions,
                     const HumanoidProportions& proportions) {
   const std::optional<HumanoidJoints> joints = humanoidJointsOf(skeleton);
   if (!joints) return;
-  HumanoidMover mover(body, frame, pins, places, proportions);
+  HumanoidMover mover(body, frame, pins, positions, proportions);
   if (!skeleton.bent()) {
     mover.legs(*joints);
     mover.evenOut(joints->arms);
@@ -215,15 +217,15 @@ void refineHumanoid(const TemplateSkeleton& skeleton, const BodyVolume& body, co
     return;
   }
   // Bent arms are better where they were found.
-  if (mover.standsOn(joints->legs)) mover.legs(*joints);
+  if (mover.restsOn(joints->legs)) mover.legs(*joints);
   if (mover.isUpright(joints->hips, joints->neck)) mover.trunk(*joints);
 }
 
 void refineHocks(const TemplateSkeleton& skeleton, const BodyVolume& body, const AnatomicalFrame& frame,
-                 const std::vector<std::optional<Vec3>>& pins, std::vector<Vec3>& places) {
+                 const std::vector<std::optional<Vec3>>& pins, std::vector<Vec3>& positions) {
   const std::optional<HumanoidJoints> joints = humanoidJointsOf(skeleton);
   if (!joints) return;
-  LegFinder finder(body, frame, places, joints->legs[0], joints->legs[1]);
+  LegFinder finder(body, frame, positions, joints->legs[0], joints->legs[1]);
   finder.findParting();
   const std::array<std::optional<Vec3>, 2> hocks = {finder.hock(0), finder.hock(1)};
   if (!hocks[0] || !hocks[1]) return;
@@ -232,9 +234,9 @@ void refineHocks(const TemplateSkeleton& skeleton, const BodyVolume& body, const
     const std::optional<Index> toes = skeleton.find(side == 0 ? "leftToes" : "rightToes");
     if (pins[foot]) continue;
     // On from the hock in the direction of its bone's upper half: below, feet spread to both sides.
-    const Vec3 half = finder.middle(side, 0.5 * (hocks[side]->y() + places[foot].y()));
-    if (toes && !pins[*toes]) places[*toes] = 2 * half - *hocks[side];
-    places[foot] = *hocks[side];
+    const Vec3 half = finder.middle(side, 0.5 * (hocks[side]->y() + positions[foot].y()));
+    if (toes && !pins[*toes]) positions[*toes] = 2 * half - *hocks[side];
+    positions[foot] = *hocks[side];
   }
 }
 

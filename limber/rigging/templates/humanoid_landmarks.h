@@ -17,12 +17,12 @@ struct HumanoidProportions {
   double hipsBelow = 0.012;      // the hips, below the legs' upper joints
   double neckAboveShoulders = 0.025;
   double headAboveNeck = 0.055;
-  double ankle = 0.02, ankleShare = 0.05;  // of the height of the legs' upper joints
-  double knee = 0.49;                      // of the way from hip to ankle
-  double elbow = 0.475;                    // of the way from shoulder to hand, of straight arms
-  double kneeForward = 0.35;               // half depths of the leg before its middle
-  double chestBack = 0.25;                 // half depths of the chest behind its middle
-  double upperChest = 0.73;                // of the way from hips to neck
+  double ankle = 0.02, ankleFraction = 0.05;  // of the height of the legs' upper joints
+  double knee = 0.49;                         // of the way from hip to ankle
+  double elbow = 0.475;                       // of the way from shoulder to hand, of straight arms
+  double kneeForward = 0.35;                  // half depths of the leg before its middle
+  double chestBack = 0.25;                    // half depths of the chest behind its middle
+  double upperChest = 0.73;                   // of the way from hips to neck
 };
 
 // Where a template has the legs and arms of VRM's humanoid: the legs' upper joints go to where the legs part; knees,
@@ -31,12 +31,12 @@ struct HumanoidProportions {
 // show (a robe hides where legs part) stays where it was. Of a template that was bent, legs and trunk move only where
 // they are upright, arms not at all. Pinned joints stay. Body space.
 void refineHumanoid(const TemplateSkeleton& skeleton, const BodyVolume& body, const AnatomicalFrame& frame,
-                    const std::vector<std::optional<Vec3>>& pins, std::vector<Vec3>& places,
+                    const std::vector<std::optional<Vec3>>& pins, std::vector<Vec3>& positions,
                     const HumanoidProportions& proportions = {});
 
 // After refineHumanoid and placeBetween. Legs that bend back below the knee, as animals' on two legs do: feet go from
 // the ground up to the hocks, and toes to where the bone from there comes to the ground. Only where both legs show one.
 void refineHocks(const TemplateSkeleton& skeleton, const BodyVolume& body, const AnatomicalFrame& frame,
-                 const std::vector<std::optional<Vec3>>& pins, std::vector<Vec3>& places);
+                 const std::vector<std::optional<Vec3>>& pins, std::vector<Vec3>& positions);
 
 }  // namespace limber

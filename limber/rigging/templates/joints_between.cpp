@@ -8,7 +8,7 @@
 
 namespace limber {
 
-void placeBetween(const TemplateSkeleton& skeleton, std::vector<Vec3>& places) {
+void placeBetween(const TemplateSkeleton& skeleton, std::vector<Vec3>& positions) {
   const Index count = skeleton.jointCount();
   const auto between = [&](Index j) { return skeleton.joints[j].role == TemplateRole::kBetween; };
   // The placed joint above each joint, and below it: a joint between that leads to none goes along with the bone that
@@ -28,28 +28,29 @@ void placeBetween(const TemplateSkeleton& skeleton, std::vector<Vec3>& places) {
   const auto highest = std::max_element(
       skeleton.joints.begin(), skeleton.joints.end(), [](const TemplateJoint& a, const TemplateJoint& b) {
         const bool known[] = {a.role != TemplateRole::kBetween, b.role != TemplateRole::kBetween};
-        return known[0] == known[1] ? a.place.y() < b.place.y() : known[1];
+        return known[0] == known[1] ? a.position.y() < b.position.y() : known[1];
       });
   for (Index j = 0; j < count; ++j) {
     if (!between(j)) continue;
     if (!above[j]) {
       // Above all that are placed: what is on the ground stays there.
-      const Vec3& found = places[highest - skeleton.joints.begin()];
-      places[j] = found + found.y() / std::max(highest->place.y(), 1e-6) * (skeleton.joints[j].place - highest->place);
+      const Vec3& found = positions[highest - skeleton.joints.begin()];
+      positions[j] =
+          found + found.y() / std::max(highest->position.y(), 1e-6) * (skeleton.joints[j].position - highest->position);
       continue;
     }
-    const Vec3 &from = skeleton.joints[*above[j]].place, &start = places[*above[j]];
-    const Vec3 offset = skeleton.joints[j].place - from;
+    const Vec3 &from = skeleton.joints[*above[j]].position, &start = positions[*above[j]];
+    const Vec3 offset = skeleton.joints[j].position - from;
     const std::optional<Index> end = below[j] ? below[j] : firstBelow[*above[j]];
     if (!end) {
-      places[j] = start + offset;
+      positions[j] = start + offset;
       continue;
     }
-    const Vec3 bone = skeleton.joints[*end].place - from, found = places[*end] - start;
+    const Vec3 bone = skeleton.joints[*end].position - from, found = positions[*end] - start;
     const double squared = std::max(bone.squaredNorm(), 1e-12);
     const double part = offset.dot(bone) / squared;
     const double scale = std::sqrt(found.squaredNorm() / squared);
-    places[j] = start + part * found + scale * (shortestRotation(bone, found) * (offset - part * bone));
+    positions[j] = start + part * found + scale * (shortestRotation(bone, found) * (offset - part * bone));
   }
 }
 

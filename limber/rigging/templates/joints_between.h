@@ -8,6 +8,6 @@
 namespace limber {
 
 // Places the joints between anew, after others were moved: as the template has them between their placed neighbours.
-void placeBetween(const TemplateSkeleton& skeleton, std::vector<Vec3>& places);
+void placeBetween(const TemplateSkeleton& skeleton, std::vector<Vec3>& positions);
 
 }  // namespace limber

@@ -13,13 +13,13 @@ namespace {
 
 constexpr double kDoubtful = 1;         // cost of a fit from which it is bent
 constexpr double kWorthBending = 0.65;  // of the cost of the template that stands
-constexpr double kMostCost = 1.9;       // of a pose that nobody pinned
+constexpr double kMaxCost = 1.9;        // of a pose that nobody pinned
 constexpr double kHopeless = 1.5;       // times that cost: no limb that reaches for another end makes up for it
-constexpr int kMostBends = 6;
-constexpr int kMostReaches = 4;
+constexpr int kMaxBends = 6;
+constexpr int kMaxReaches = 4;
 constexpr double kSizeSteps[] = {0.8, 1, 1.25};
 constexpr double kLeftOut = 0.5;  // of being far from all bones: such ends are reached for
-constexpr std::size_t kMostEnds = 3;
+constexpr std::size_t kMaxEnds = 3;
 
 TemplateFit nearestOf(const std::vector<TemplateVariant>& variants, TemplateEmbedder& embedder) {
   std::vector<TemplateFit> fits = fitVariants(variants, embedder);
@@ -33,7 +33,7 @@ std::vector<BendTarget> foundTargets(const TemplateFit& fit) {
     if (fit.pins[j]) {
       targets.push_back({j, *fit.pins[j], true});
     } else if (fit.skeleton.joints[j].role == TemplateRole::kPlaced) {
-      targets.push_back({j, fit.embedding.places[j], false});
+      targets.push_back({j, fit.embedding.positions[j], false});
     }
   }
   return targets;
@@ -49,7 +49,7 @@ std::vector<TemplateVariant> madeInParallel(std::size_t count, const Make& make)
 }
 
 void bendNearer(TemplateEmbedder& embedder, TemplateFit& fit) {
-  for (int bend = 0; bend < kMostBends; ++bend) {
+  for (int bend = 0; bend < kMaxBends; ++bend) {
     const std::vector<TemplateVariant> variants = madeInParallel(std::size(kSizeSteps), [&](std::size_t i) {
       return bentTemplate(fit.skeleton, foundTargets(fit), kSizeSteps[i] * sizeOf(fit.skeleton));
     });
@@ -63,9 +63,9 @@ void bendNearer(TemplateEmbedder& embedder, TemplateFit& fit) {
 std::vector<Vec3> endsLeftOut(const BodyVolume& body, const TemplateFit& fit) {
   std::vector<Vec3> ends;
   for (const BodyTip& tip : body.tips) {
-    const Vec3 place = fit.frame.toBody(tip.position);
-    if (ends.size() < kMostEnds && farFromBones(fit.skeleton, fit.embedding.places, place, 0) > kLeftOut) {
-      ends.push_back(place);
+    const Vec3 position = fit.frame.toBody(tip.position);
+    if (ends.size() < kMaxEnds && farFromBones(fit.skeleton, fit.embedding.positions, position, 0) > kLeftOut) {
+      ends.push_back(position);
     }
   }
   return ends;
@@ -127,10 +127,10 @@ void searchPose(TemplateEmbedder& embedder, TemplateFit& fit) {
   if (!pinned && (fit.cost < kDoubtful || fit.frame.symmetric())) return;
   TemplateFit bent = fit;
   bendNearer(embedder, bent);
-  if (!pinned && bent.cost > kHopeless * kMostCost) return;
-  for (int reach = 0; reach < kMostReaches && reachOut(embedder, bent); ++reach) {
+  if (!pinned && bent.cost > kHopeless * kMaxCost) return;
+  for (int reach = 0; reach < kMaxReaches && reachOut(embedder, bent); ++reach) {
   }
-  if (pinned || bent.cost < std::min(kMostCost, kWorthBending * fit.cost)) fit = std::move(bent);
+  if (pinned || bent.cost < std::min(kMaxCost, kWorthBending * fit.cost)) fit = std::move(bent);
 }
 
 }  // namespace limber

@@ -11,10 +11,10 @@ TEST(PoseSearch, LeavesWhatStandsAlone) {
   const TemplateSkeleton& skeleton = findTemplate("humanoid");
   TemplateEmbedder embedder(skeleton, person.body, person.frame, TemplatePins(skeleton.jointCount()));
   std::vector<TemplateFit> fits = fitVariants({{skeleton, 0}}, embedder);
-  const std::vector<Vec3> before = fits.front().embedding.places;
+  const std::vector<Vec3> before = fits.front().embedding.positions;
   searchPose(embedder, fits.front());
   EXPECT_FALSE(fits.front().skeleton.bent());
-  EXPECT_EQ(fits.front().embedding.places, before);
+  EXPECT_EQ(fits.front().embedding.positions, before);
 }
 
 }  // namespace limber

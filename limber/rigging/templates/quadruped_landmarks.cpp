@@ -5,7 +5,7 @@
 #include <string>
 
 #include "limber/rigging/body/leg_finder.h"
-#include "limber/rigging/body/medial_way.h"
+#include "limber/rigging/body/medial_path.h"
 #include "limber/rigging/templates/joints_between.h"
 #include "limber/rigging/templates/template_embedding.h"
 
@@ -67,8 +67,8 @@ struct Column {
 class QuadrupedMover {
  public:
   QuadrupedMover(const BodyVolume& body, const AnatomicalFrame& frame, const std::vector<std::optional<Vec3>>& pins,
-                 std::vector<Vec3>& places, const QuadrupedProportions& proportions)
-      : body_(body), frame_(frame), pins_(pins), places_(places), proportions_(proportions) {}
+                 std::vector<Vec3>& positions, const QuadrupedProportions& proportions)
+      : body_(body), frame_(frame), pins_(pins), positions_(positions), proportions_(proportions) {}
 
   bool frontLegs(const std::array<LegJoints, 2>& legs) {
     LegFinder finder = follow(legs);
@@ -99,36 +99,36 @@ class QuadrupedMover {
   }
 
   void rear(const QuadrupedJoints& joints) {
-    const double legs = 0.5 * (places_[joints.hind[0].upper].z() + places_[joints.hind[1].upper].z());
+    const double legs = 0.5 * (positions_[joints.hind[0].upper].z() + positions_[joints.hind[1].upper].z());
     moveInto(joints.hips, legs + proportions_.hipsForward, proportions_.hipsUp);
     moveInto(joints.tail, legs + proportions_.tailForward, proportions_.tailUp);
   }
 
   void fore(const QuadrupedJoints& joints) {
-    const double legs = 0.5 * (places_[joints.front[0].upper].z() + places_[joints.front[1].upper].z());
+    const double legs = 0.5 * (positions_[joints.front[0].upper].z() + positions_[joints.front[1].upper].z());
     moveInto(joints.chest, legs + proportions_.chestForward, proportions_.chestUp);
     moveInto(joints.neck, legs + proportions_.neckForward, proportions_.neckUp);
   }
 
   // Along the tail from its root to the end of the body that lies farthest behind it in the middle.
   void tail(const QuadrupedJoints& joints) {
-    const Vec3 root = places_[joints.tail];
+    const Vec3 root = positions_[joints.tail];
     std::optional<Vec3> end;
     for (const BodyTip& tip : body_.tips) {
-      const Vec3 place = frame_.toBody(tip.position);
-      if (std::abs(place.x()) > kTailAside || place.y() < kLowestTail || place.z() > root.z()) continue;
-      if (!end || (place - root).norm() > (*end - root).norm()) end = place;
+      const Vec3 position = frame_.toBody(tip.position);
+      if (std::abs(position.x()) > kTailAside || position.y() < kLowestTail || position.z() > root.z()) continue;
+      if (!end || (position - root).norm() > (*end - root).norm()) end = position;
     }
     if (!end || (*end - root).norm() < kShortestTail) return;
-    std::vector<Vec3> way = medialWay(body_, frame_.fromBody(root), frame_.fromBody(*end));
-    if (way.empty()) return;
-    way.front() = frame_.fromBody(root);
-    way.push_back(frame_.fromBody(*end));
+    std::vector<Vec3> path = medialPath(body_, frame_.fromBody(root), frame_.fromBody(*end));
+    if (path.empty()) return;
+    path.front() = frame_.fromBody(root);
+    path.push_back(frame_.fromBody(*end));
     for (std::size_t i = 0; i < joints.onTail.size(); ++i) {
-      const double share = static_cast<double>(i + 1) / static_cast<double>(joints.onTail.size());
-      Vec3 place = frame_.toBody(alongWay(way, share));
-      if (frame_.symmetric()) place.x() = 0;
-      moveTo(joints.onTail[i], place);
+      const double fraction = static_cast<double>(i + 1) / static_cast<double>(joints.onTail.size());
+      Vec3 position = frame_.toBody(alongPath(path, fraction));
+      if (frame_.symmetric()) position.x() = 0;
+      moveTo(joints.onTail[i], position);
     }
   }
 
@@ -139,7 +139,7 @@ class QuadrupedMover {
       if (hind) moveTo(joints.hind[side].toes, toes_[1][side]);
     }
     if (!front || !hind) return;
-    const double from = places_[joints.hips].z(), to = places_[joints.chest].z();
+    const double from = positions_[joints.hips].z(), to = positions_[joints.chest].z();
     moveInto(joints.spine[0], from + (to - from) / 3, proportions_.spineUp);
     moveInto(joints.spine[1], from + 2 * (to - from) / 3, proportions_.spineUp);
   }
@@ -147,7 +147,7 @@ class QuadrupedMover {
  private:
   LegFinder follow(const std::array<LegJoints, 2>& legs) const {
     const auto leg = [](const LegJoints& of) { return LegChain{of.upper, of.lower, of.toes}; };
-    return LegFinder(body_, frame_, places_, leg(legs[0]), leg(legs[1]));
+    return LegFinder(body_, frame_, positions_, leg(legs[0]), leg(legs[1]));
   }
 
   // The tallest part of the inside above and below a place.
@@ -166,27 +166,27 @@ class QuadrupedMover {
   }
 
   // Of a leg, on the way from where it parts to the back above it.
-  Vec3 upperJoint(const LegFinder& finder, int side, double share) const {
-    Vec3 place = finder.middle(side, finder.parting());
-    const std::optional<Column> trunk = columnAt(0, place.z());
+  Vec3 upperJoint(const LegFinder& finder, int side, double fraction) const {
+    Vec3 position = finder.middle(side, finder.parting());
+    const std::optional<Column> trunk = columnAt(0, position.z());
     const double back = trunk ? std::max(trunk->high, finder.parting()) : finder.parting();
-    place.y() += share * (back - finder.parting());
-    return place;
+    position.y() += fraction * (back - finder.parting());
+    return position;
   }
 
-  void moveTo(Index joint, const Vec3& place) {
-    if (!pins_[joint]) places_[joint] = place;
+  void moveTo(Index joint, const Vec3& position) {
+    if (!pins_[joint]) positions_[joint] = position;
   }
 
-  void moveInto(Index joint, double z, double share) {
+  void moveInto(Index joint, double z, double fraction) {
     const std::optional<Column> trunk = columnAt(0, z);
-    if (trunk) moveTo(joint, {0, trunk->low + share * (trunk->high - trunk->low), z});
+    if (trunk) moveTo(joint, {0, trunk->low + fraction * (trunk->high - trunk->low), z});
   }
 
   const BodyVolume& body_;
   const AnatomicalFrame& frame_;
   const std::vector<std::optional<Vec3>>& pins_;
-  std::vector<Vec3>& places_;
+  std::vector<Vec3>& positions_;
   const QuadrupedProportions& proportions_;
   std::array<std::array<Vec3, 2>, 2> toes_ = {};  // front and hind, left and right
 };
@@ -194,15 +194,15 @@ class QuadrupedMover {
 }  // namespace
 
 void refineQuadruped(const TemplateSkeleton& skeleton, const BodyVolume& body, const AnatomicalFrame& frame,
-                     const std::vector<std::optional<Vec3>>& pins, std::vector<Vec3>& places,
+                     const std::vector<std::optional<Vec3>>& pins, std::vector<Vec3>& positions,
                      const QuadrupedProportions& proportions) {
   const std::optional<QuadrupedJoints> joints = quadrupedJointsOf(skeleton);
   if (!joints) return;
-  QuadrupedMover mover(body, frame, pins, places, proportions);
+  QuadrupedMover mover(body, frame, pins, positions, proportions);
   const bool fore = mover.frontLegs(joints->front), rear = mover.hindLegs(joints->hind);
   if (fore) mover.fore(*joints);
   if (rear) mover.rear(*joints);
-  placeBetween(skeleton, places);
+  placeBetween(skeleton, positions);
   mover.between(*joints, fore, rear);
   mover.tail(*joints);
 }

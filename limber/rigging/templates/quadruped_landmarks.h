@@ -33,7 +33,7 @@ struct QuadrupedProportions {
 // and the roots of neck and tail go into the trunk, where the legs carry it; the tail runs from there to its end. What
 // a body does not show stays where it was. Pinned joints stay. Body space.
 void refineQuadruped(const TemplateSkeleton& skeleton, const BodyVolume& body, const AnatomicalFrame& frame,
-                     const std::vector<std::optional<Vec3>>& pins, std::vector<Vec3>& places,
+                     const std::vector<std::optional<Vec3>>& pins, std::vector<Vec3>& positions,
                      const QuadrupedProportions& proportions = {});
 
 }  // namespace limber

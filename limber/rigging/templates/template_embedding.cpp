@@ -15,22 +15,22 @@ namespace limber {
 namespace {
 
 // Weights of the penalties, each of which is about 1 for what is unusual. Heights are body heights.
-constexpr double kOutside = 40;         // for each height of a bone that runs outside
-constexpr double kOutsideDepth = 0.02;  // heights outside that count in full
-constexpr double kSample = 0.03;        // heights between two looks along a bone
-constexpr double kLongestBone = 0.7;    // heights
-constexpr double kOffMiddle = 1.5;      // for a place beside the deepest of its part
-constexpr double kPlaceSpread = 0.22;   // heights, of joints about their place in the template
-constexpr double kTipSpread = 0.12;     // heights up, of tips on the ground and on top
-constexpr double kHandSpread = 0.3;     // of other tips
-constexpr double kNearEnd = 0.12;       // heights from the ground or the top
-constexpr double kMiddleSpread = 0.02;  // heights, of joints of the middle to the sides
-constexpr double kTipReach = 0.04;      // heights from an end of the model
-constexpr double kNoTip = 4;            // most that a tip away from every end costs
-constexpr double kNearPlane = 0.03;     // heights: such spheres count for the middle
-constexpr double kLineSpacing = 0.02;   // heights of places along the middle line
-constexpr double kWorstBone = 25;       // most that length and direction of a bone cost
-constexpr double kWorstTip = 5;         // of the way to a tip: stumps have no hands and feet
+constexpr double kOutside = 40;           // for each height of a bone that runs outside
+constexpr double kOutsideDepth = 0.02;    // heights outside that count in full
+constexpr double kSample = 0.03;          // heights between two looks along a bone
+constexpr double kLongestBone = 0.7;      // heights
+constexpr double kOffMiddle = 1.5;        // for a place beside the deepest of its part
+constexpr double kPositionSpread = 0.22;  // heights, of joints about their place in the template
+constexpr double kTipSpread = 0.12;       // heights up, of tips on the ground and on top
+constexpr double kHandSpread = 0.3;       // of other tips
+constexpr double kNearEnd = 0.12;         // heights from the ground or the top
+constexpr double kMiddleSpread = 0.02;    // heights, of joints of the middle to the sides
+constexpr double kTipReach = 0.04;        // heights from an end of the model
+constexpr double kNoTip = 4;              // most that a tip away from every end costs
+constexpr double kNearPlane = 0.03;       // heights: such spheres count for the middle
+constexpr double kLineSpacing = 0.02;     // heights of places along the middle line
+constexpr double kWorstBone = 25;         // most that length and direction of a bone cost
+constexpr double kWorstTip = 5;           // of the way to a tip: stumps have no hands and feet
 
 constexpr double kPinnedEvenly = 1e-3;  // heights between a pin and the mirror image of its like
 
@@ -81,13 +81,13 @@ class TemplateEmbedder::Search {
 
  private:
   struct Candidate {
-    Vec3 place = Vec3::Zero();
+    Vec3 position = Vec3::Zero();
     double radius = 0;
     double offMiddle = 0;  // 0 for the deepest of its part, up to 1
     double toTip = 0;      // heights to the nearest end of the model
   };
 
-  bool isLeftOrMiddle(const TemplateJoint& joint) const { return !joint.mirror || joint.place.x() > 0; }
+  bool isLeftOrMiddle(const TemplateJoint& joint) const { return !joint.mirror || joint.position.x() > 0; }
 
   // Placed joints and tips that are searched for, each with the one above it.
   void chooseJoints() {
@@ -113,7 +113,7 @@ class TemplateEmbedder::Search {
 
   Candidate candidateAt(const Vec3& point) const {
     Candidate candidate;
-    candidate.place = frame_.toBody(point);
+    candidate.position = frame_.toBody(point);
     candidate.radius = -body_.distance->at(point) / frame_.height;
     candidate.toTip = std::numeric_limits<double>::infinity();
     for (const BodyTip& tip : body_.tips) {
@@ -127,7 +127,8 @@ class TemplateEmbedder::Search {
   double offMiddle(const Candidate& c) const {
     double deepest = c.radius;
     for (const Candidate& other : candidates_) {
-      if ((other.place - c.place).squaredNorm() < 2.25 * c.radius * c.radius) deepest = std::max(deepest, other.radius);
+      if ((other.position - c.position).squaredNorm() < 2.25 * c.radius * c.radius)
+        deepest = std::max(deepest, other.radius);
     }
     return deepest > 0 && c.radius > 0 ? 1 - c.radius / deepest : 1;
   }
@@ -137,7 +138,7 @@ class TemplateEmbedder::Search {
   void gatherCandidates() {
     std::vector<Vec3> points;
     // Of many spheres every second, third, ...: the deepest alone may all lie in a large head.
-    const std::size_t stride = (body_.spheres.size() + options_.mostSpheres - 1) / options_.mostSpheres;
+    const std::size_t stride = (body_.spheres.size() + options_.maxSpheres - 1) / options_.maxSpheres;
     for (std::size_t s = 0; s < body_.spheres.size(); s += stride) points.push_back(body_.spheres[s].center);
     for (const BodyTip& tip : body_.tips) points.push_back(tip.position);
     const Vec3 left = frame_.axes.row(0).transpose();
@@ -170,21 +171,21 @@ class TemplateEmbedder::Search {
   void addMiddleLine() {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const MedialSphere& sphere : body_.spheres) {
-      const Vec3 place = frame_.toBody(sphere.center);
+      const Vec3 position = frame_.toBody(sphere.center);
       const double radius = sphere.radius / frame_.height;
-      low = std::min(low, place.z() - radius);
-      high = std::max(high, place.z() + radius);
+      low = std::min(low, position.z() - radius);
+      high = std::max(high, position.z() + radius);
     }
     const double step = 0.5 * body_.distance->spacing() / frame_.height;
     for (double y = 0.5 * kLineSpacing; y < 1; y += kLineSpacing) {
       Vec3 deepest = Vec3::Zero();
       double depth = 0;
       for (double z = low; z <= high; z += step) {
-        const Vec3 place(0, y, z);
-        const double here = -body_.distance->at(frame_.fromBody(place));
+        const Vec3 position(0, y, z);
+        const double here = -body_.distance->at(frame_.fromBody(position));
         if (here > depth) {
           depth = here;
-          deepest = place;
+          deepest = position;
         }
       }
       if (depth > 0) add(frame_.fromBody(deepest));
@@ -197,8 +198,8 @@ class TemplateEmbedder::Search {
     const int steps = std::max(1, static_cast<int>(length / kSample));
     double outside = 0;
     for (int s = 0; s < steps; ++s) {
-      const Vec3 place = a + (s + 0.5) / steps * (b - a);
-      const double value = body_.distance->at(frame_.fromBody(place)) / frame_.height;
+      const Vec3 position = a + (s + 0.5) / steps * (b - a);
+      const double value = body_.distance->at(frame_.fromBody(position)) / frame_.height;
       outside += std::clamp(value / kOutsideDepth, 0.0, 1.0);
     }
     return kOutside * outside * length / steps;
@@ -211,11 +212,13 @@ class TemplateEmbedder::Search {
       for (std::size_t a = begin; a < end; ++a) {
         Bones& bones = bones_[a];
         for (std::size_t b = 0; b < count; ++b) {
-          const Vec3 way = candidates_[b].place - candidates_[a].place;
-          const double length = std::max(way.norm(), 1e-3);
-          for (int axis = 0; axis < 3; ++axis) bones.direction[axis][b] = static_cast<float>(way[axis] / length);
+          const Vec3 displacement = candidates_[b].position - candidates_[a].position;
+          const double length = std::max(displacement.norm(), 1e-3);
+          for (int axis = 0; axis < 3; ++axis)
+            bones.direction[axis][b] = static_cast<float>(displacement[axis] / length);
           bones.logLength[b] = static_cast<float>(std::log(length));
-          if (b > a) bones.outside[b] = static_cast<float>(outsidePenalty(candidates_[a].place, candidates_[b].place));
+          if (b > a)
+            bones.outside[b] = static_cast<float>(outsidePenalty(candidates_[a].position, candidates_[b].position));
         }
       }
     });
@@ -225,23 +228,23 @@ class TemplateEmbedder::Search {
     }
   }
 
-  double placePenalty(Index j, const Candidate& c) const {
+  double positionPenalty(Index j, const Candidate& c) const {
     const TemplateJoint& joint = skeleton_.joints[j];
     const bool tip = joint.role == TemplateRole::kTip;
-    const Vec3 off = c.place - joint.place;
+    const Vec3 off = c.position - joint.position;
     double penalty = kOffMiddle * (tip ? 0 : c.offMiddle * c.offMiddle);
     // Feet are on the ground and the head is on top; hands hang or reach out.
-    const bool outermost = tip && (joint.place.y() < kNearEnd || joint.place.y() > 1 - kNearEnd);
-    const double up = off.y() / (outermost ? kTipSpread : tip ? kHandSpread : kPlaceSpread);
-    penalty += up * up + off.z() * off.z() / (4 * kPlaceSpread * kPlaceSpread);
+    const bool outermost = tip && (joint.position.y() < kNearEnd || joint.position.y() > 1 - kNearEnd);
+    const double up = off.y() / (outermost ? kTipSpread : tip ? kHandSpread : kPositionSpread);
+    penalty += up * up + off.z() * off.z() / (4 * kPositionSpread * kPositionSpread);
     if (skeleton_.bent()) {
-      penalty += off.x() * off.x() / (4 * kPlaceSpread * kPlaceSpread);
+      penalty += off.x() * off.x() / (4 * kPositionSpread * kPositionSpread);
     } else if (!joint.mirror) {
-      penalty += c.place.x() * c.place.x() / (kMiddleSpread * kMiddleSpread);
+      penalty += c.position.x() * c.position.x() / (kMiddleSpread * kMiddleSpread);
     } else {
-      const double inside = joint.place.x() > 0 ? c.place.x() : -c.place.x();
+      const double inside = joint.position.x() > 0 ? c.position.x() : -c.position.x();
       const double over = std::min(0.0, inside - 0.01) / kMiddleSpread;
-      penalty += over * over + off.x() * off.x() / (4 * kPlaceSpread * kPlaceSpread);
+      penalty += over * over + off.x() * off.x() / (4 * kPositionSpread * kPositionSpread);
     }
     if (tip) penalty += std::min(kNoTip, c.toTip * c.toTip / (kTipReach * kTipReach));
     return penalty;
@@ -253,7 +256,7 @@ class TemplateEmbedder::Search {
   };
   BoneShape shapeOf(Index j) const {
     const TemplateJoint& joint = skeleton_.joints[j];
-    const Vec3 bone = joint.place - skeleton_.joints[above_[j]].place;
+    const Vec3 bone = joint.position - skeleton_.joints[above_[j]].position;
     const double length = std::max(bone.norm(), 1e-3);
     return {(bone / length).cast<float>(), static_cast<float>(std::log(length)),
             static_cast<float>(1 / (joint.lengthSpread * joint.lengthSpread)),
@@ -283,7 +286,7 @@ class TemplateEmbedder::Search {
       tree.below[j].resize(padded(count));
       for (std::size_t c = 0; c < count; ++c) {
         const bool allowed = pinned_[j] == kNoIndex || pinned_[j] == c;
-        tree.below[j][c] = allowed ? static_cast<float>(placePenalty(j, candidates_[c])) : 1e9f;
+        tree.below[j][c] = allowed ? static_cast<float>(positionPenalty(j, candidates_[c])) : 1e9f;
       }
       if (above_[j] != kNoIndex) tree.shapes[j] = shapeOf(j);
     }
@@ -310,7 +313,7 @@ class TemplateEmbedder::Search {
       parallelFor(candidates_.size(), 16, [&](std::size_t begin, std::size_t end) {
         for (std::size_t a = begin; a < end; ++a) {
           for (Tree& tree : trees) {
-            for (const Index j : joints) tree.below[above_[j]][a] += leastFrom(tree, j, a);
+            for (const Index j : joints) tree.below[above_[j]][a] += minFrom(tree, j, a);
           }
         }
       });
@@ -337,7 +340,7 @@ class TemplateEmbedder::Search {
     return costs;
   }
 
-  float leastFrom(const Tree& tree, Index j, std::size_t above) const {
+  float minFrom(const Tree& tree, Index j, std::size_t above) const {
     Lanes least;
     least.fill(kNever);
     for (std::size_t first = 0; first < bones_[above].outside.size(); first += kLanes) {
@@ -351,7 +354,7 @@ class TemplateEmbedder::Search {
 
   // The first candidate that has the least costs.
   std::size_t choiceFrom(const Tree& tree, Index j, std::size_t above) const {
-    const float least = leastFrom(tree, j, above);
+    const float least = minFrom(tree, j, above);
     for (std::size_t first = 0; first < bones_[above].outside.size(); first += kLanes) {
       const Lanes costs = costsFrom(tree, j, above, first);
       const auto found = std::find(costs.begin(), costs.end(), least);
@@ -361,18 +364,18 @@ class TemplateEmbedder::Search {
   }
 
   double boneCost(Index j, const Candidate& above, const Candidate& below) const {
-    const Vec3 bone = below.place - above.place;
+    const Vec3 bone = below.position - above.position;
     const double length = std::max(bone.norm(), 1e-3);
-    return outsidePenalty(above.place, below.place) +
+    return outsidePenalty(above.position, below.position) +
            bonePenalty(shapeOf(j), static_cast<float>(std::log(length)), (bone / length).cast<float>());
   }
 
   // Of a joint at a place, and of the bones that meet there.
-  double costAround(Index j, const Candidate& place, const std::vector<Candidate>& found) const {
-    double cost = placePenalty(j, place);
-    if (above_[j] != kNoIndex) cost += boneCost(j, found[above_[j]], place);
+  double costAround(Index j, const Candidate& position, const std::vector<Candidate>& found) const {
+    double cost = positionPenalty(j, position);
+    if (above_[j] != kNoIndex) cost += boneCost(j, found[above_[j]], position);
     for (const Index other : chosen_) {
-      if (above_[other] == j) cost += boneCost(other, place, found[other]);
+      if (above_[other] == j) cost += boneCost(other, position, found[other]);
     }
     return cost;
   }
@@ -392,8 +395,8 @@ class TemplateEmbedder::Search {
     const bool onPlane = half_ && !skeleton_.joints[j].mirror;
     double least = costAround(j, found[j], found);
     for (int axis = onPlane ? 1 : 0; axis < 3; ++axis) {
-      for (const double way : {step, -step}) {
-        Candidate other = candidateAt(frame_.fromBody(found[j].place + way * Vec3::Unit(axis)));
+      for (const double displacement : {step, -step}) {
+        Candidate other = candidateAt(frame_.fromBody(found[j].position + displacement * Vec3::Unit(axis)));
         other.offMiddle = offMiddle(other);
         const double cost = costAround(j, other, found);
         if (cost >= least) continue;
@@ -406,7 +409,7 @@ class TemplateEmbedder::Search {
 
   TemplateEmbedding readOff(const Tree& tree) const {
     TemplateEmbedding result;
-    result.places.assign(skeleton_.jointCount(), Vec3::Zero());
+    result.positions.assign(skeleton_.jointCount(), Vec3::Zero());
     result.costs.assign(skeleton_.jointCount(), 0.0);
     std::vector<std::size_t> at(skeleton_.jointCount(), 0);
     std::vector<Candidate> found(skeleton_.jointCount());
@@ -418,20 +421,20 @@ class TemplateEmbedder::Search {
     }
     for (const Index j : chosen_) {
       if (above_[j] != kNoIndex) result.costs[j] = boneCost(j, found[above_[j]], found[j]);
-      result.costs[j] += placePenalty(j, found[j]);
+      result.costs[j] += positionPenalty(j, found[j]);
       result.cost += result.costs[j] / static_cast<double>(chosen_.size());
     }
     if (options_.refine) descend(found);
-    for (const Index j : chosen_) result.places[j] = found[j].place;
+    for (const Index j : chosen_) result.positions[j] = found[j].position;
     if (half_) {
       for (const Index j : chosen_) {
         const std::optional<Index> mirror = skeleton_.joints[j].mirror;
         if (!mirror) continue;
-        result.places[*mirror] = result.places[j].cwiseProduct(Vec3(-1, 1, 1));
+        result.positions[*mirror] = result.positions[j].cwiseProduct(Vec3(-1, 1, 1));
         result.costs[*mirror] = result.costs[j];
       }
     }
-    placeBetween(skeleton_, result.places);
+    placeBetween(skeleton_, result.positions);
     return result;
   }
 

@@ -18,14 +18,14 @@ using TemplatePins = std::vector<std::optional<Vec3>>;  // places in body space 
 bool pinnedEvenly(const TemplateSkeleton& skeleton, const TemplatePins& pins);
 
 struct TemplateEmbedding {
-  std::vector<Vec3> places;   // body space, one for each joint of the template
-  std::vector<double> costs;  // before refinement, of each joint and the bone that leads to it; 0 for joints between
-  double cost = 0;            // mean over the placed joints; about 1 for a body that is like the template
+  std::vector<Vec3> positions;  // body space, one for each joint of the template
+  std::vector<double> costs;    // before refinement, of each joint and the bone that leads to it; 0 for joints between
+  double cost = 0;              // mean over the placed joints; about 1 for a body that is like the template
 };
 
 struct EmbeddingOptions {
-  std::size_t mostSpheres = 1000;  // that are looked at, 1 or more
-  bool refine = true;              // joints may leave the spheres for places nearby that cost less
+  std::size_t maxSpheres = 1000;  // that are looked at, 1 or more
+  bool refine = true;             // joints may leave the spheres for places nearby that cost less
 };
 
 // Embeds the placed joints at medial spheres and ends of the model, all at once, so that the sum of penalties is the

@@ -21,14 +21,16 @@ TEST(TemplateEmbedding, PutsJointsIntoTheirLimbs) {
   const TemplatePins pins(skeleton.jointCount());
   const TemplateEmbedding embedding =
       TemplateEmbedder(skeleton, person.body, person.frame, pins).embed(asIs(skeleton)).front();
-  const auto place = [&](const char* name) { return person.frame.fromBody(embedding.places[*skeleton.find(name)]); };
-  EXPECT_LT((place("leftHand") - person.shape.hand).norm(), 0.08);
-  EXPECT_LT((place("leftLowerArm") - person.shape.elbow).norm(), 0.06);
-  EXPECT_LT((place("leftFoot") - person.shape.ankle).norm(), 0.06);
-  EXPECT_LT((place("leftLowerLeg") - person.shape.knee).norm(), 0.06);
+  const auto positionOf = [&](const char* name) {
+    return person.frame.fromBody(embedding.positions[*skeleton.find(name)]);
+  };
+  EXPECT_LT((positionOf("leftHand") - person.shape.hand).norm(), 0.08);
+  EXPECT_LT((positionOf("leftLowerArm") - person.shape.elbow).norm(), 0.06);
+  EXPECT_LT((positionOf("leftFoot") - person.shape.ankle).norm(), 0.06);
+  EXPECT_LT((positionOf("leftLowerLeg") - person.shape.knee).norm(), 0.06);
   for (Index j = 0; j < skeleton.jointCount(); ++j) {  // the body is symmetric
     const Index mirror = skeleton.joints[j].mirror.value_or(j);
-    EXPECT_LT((embedding.places[mirror] - embedding.places[j].cwiseProduct(Vec3(-1, 1, 1))).norm(), 1e-9);
+    EXPECT_LT((embedding.positions[mirror] - embedding.positions[j].cwiseProduct(Vec3(-1, 1, 1))).norm(), 1e-9);
   }
 }
 
@@ -41,14 +43,14 @@ TEST(TemplateEmbedding, IsRefinedTowardsTheMiddleOfLimbs) {
   };
   const TemplateEmbedding rough = embedded(false), fine = embedded(true);
   EXPECT_EQ(rough.cost, fine.cost);
-  EXPECT_NE(rough.places, fine.places);
+  EXPECT_NE(rough.positions, fine.positions);
   // From the axes of the left leg's capsules.
   const auto offAxis = [&](const TemplateEmbedding& embedding) {
     double sum = 0;
     const Vec3 axis = (person.shape.knee - person.shape.ankle).normalized();
     for (const char* name : {"leftLowerLeg", "leftFoot"}) {
-      const Vec3 place = person.frame.fromBody(embedding.places[*skeleton.find(name)]) - person.shape.ankle;
-      sum += (place - place.dot(axis) * axis).norm();
+      const Vec3 position = person.frame.fromBody(embedding.positions[*skeleton.find(name)]) - person.shape.ankle;
+      sum += (position - position.dot(axis) * axis).norm();
     }
     return sum;
   };
@@ -63,7 +65,7 @@ TEST(TemplateEmbedding, KeepsPins) {
   pins[*skeleton.find("leftLowerArm")] = pin;
   const TemplateEmbedding embedding =
       TemplateEmbedder(skeleton, person.body, person.frame, pins).embed(asIs(skeleton)).front();
-  EXPECT_LT((embedding.places[*skeleton.find("leftLowerArm")] - pin).norm(), 1e-9);
+  EXPECT_LT((embedding.positions[*skeleton.find("leftLowerArm")] - pin).norm(), 1e-9);
 }
 
 TEST(TemplateEmbedding, CostsMoreInWhatIsNoPerson) {
@@ -98,7 +100,7 @@ TEST(TemplateEmbedding, OfManyVariantsIsThatOfEach) {
   for (std::size_t v = 0; v < variants.size(); ++v) {
     const TemplateEmbedding alone =
         TemplateEmbedder(skeleton, person.body, person.frame, pins).embed(std::span(&variants[v], 1)).front();
-    EXPECT_EQ(together[v].places, alone.places);
+    EXPECT_EQ(together[v].positions, alone.positions);
     EXPECT_EQ(together[v].cost, alone.cost);
   }
 }

@@ -27,39 +27,39 @@ double unusual(const AnatomicalFrame& frame) {
 
 // How much of the body no bone comes near, 0 to 1: in equal parts of its medial spheres, and of the ends of its limbs
 // by how far these reach.
-double unexplained(const TemplateSkeleton& skeleton, const std::vector<Vec3>& places, const BodyVolume& body,
+double unexplained(const TemplateSkeleton& skeleton, const std::vector<Vec3>& positions, const BodyVolume& body,
                    const AnatomicalFrame& frame) {
   double spheres = 0, tips = 0, reach = 0;
   for (const MedialSphere& sphere : body.spheres) {
-    const double far = farFromBones(skeleton, places, frame.toBody(sphere.center), sphere.radius / frame.height);
+    const double far = farFromBones(skeleton, positions, frame.toBody(sphere.center), sphere.radius / frame.height);
     spheres += far / static_cast<double>(body.spheres.size());
   }
   for (const BodyTip& tip : body.tips) {
-    tips += tip.reach * farFromBones(skeleton, places, frame.toBody(tip.position), 0);
+    tips += tip.reach * farFromBones(skeleton, positions, frame.toBody(tip.position), 0);
     reach += tip.reach;
   }
   return 0.5 * (spheres + tips / std::max(reach, 1e-12));
 }
 
 // Of the placed joints that hold the tips on the ground.
-std::vector<Vec3> feetOf(const TemplateSkeleton& skeleton, const std::vector<Vec3>& places) {
+std::vector<Vec3> feetOf(const TemplateSkeleton& skeleton, const std::vector<Vec3>& positions) {
   std::vector<Vec3> feet;
   for (Index tip = 0; tip < skeleton.jointCount(); ++tip) {
     const TemplateJoint& joint = skeleton.joints[tip];
-    const bool onGround = joint.role == TemplateRole::kTip && joint.place.y() <= kOnGround && joint.parent;
-    if (onGround) feet.push_back(places[placedAbove(skeleton, tip)]);
+    const bool onGround = joint.role == TemplateRole::kTip && joint.position.y() <= kOnGround && joint.parent;
+    if (onGround) feet.push_back(positions[placedAbove(skeleton, tip)]);
   }
   return feet;
 }
 
 }  // namespace
 
-double farFromBones(const TemplateSkeleton& skeleton, const std::vector<Vec3>& places, const Vec3& place,
+double farFromBones(const TemplateSkeleton& skeleton, const std::vector<Vec3>& positions, const Vec3& position,
                     double radius) {
   double nearest = std::numeric_limits<double>::infinity();
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
     if (!skeleton.joints[j].parent) continue;
-    nearest = std::min(nearest, distanceToBone(place, places[*skeleton.joints[j].parent], places[j]));
+    nearest = std::min(nearest, distanceToBone(position, positions[*skeleton.joints[j].parent], positions[j]));
   }
   const double beyond = nearest - radius;
   return std::clamp((beyond - kNearBone) / (kFarFromBone - kNearBone), 0.0, 1.0);
@@ -71,13 +71,13 @@ std::vector<TemplateFit> fitVariants(const std::vector<TemplateVariant>& variant
   std::vector<TemplateEmbedding> embeddings = embedder.embed(variants);
   std::vector<TemplateFit> fits;
   for (std::size_t v = 0; v < variants.size(); ++v) {
-    const double left = unexplained(variants[v].skeleton, embeddings[v].places, body, frame);
+    const double left = unexplained(variants[v].skeleton, embeddings[v].positions, body, frame);
     const double cost = embeddings[v].cost + unusual(frame) + kUnexplained * left;
     fits.push_back({variants[v].skeleton, frame, embedder.pins(), std::move(embeddings[v]), cost, {}});
   }
   // Feet point to the front, whichever way the rest of a body may be read; told once, by the best of them.
   const TemplateFit& best = *std::min_element(fits.begin(), fits.end(), cheaper);
-  const double forward = feetForward(body, frame, feetOf(best.skeleton, best.embedding.places));
+  const double forward = feetForward(body, frame, feetOf(best.skeleton, best.embedding.positions));
   for (TemplateFit& fit : fits) fit.cost += kFeetBackward * std::max(0.0, -forward);
   return fits;
 }

@@ -5,7 +5,7 @@
 
 #include "limber/rigging/body/anatomical_frame.h"
 #include "limber/rigging/body/body_volume.h"
-#include "limber/rigging/templates/limb_places.h"
+#include "limber/rigging/templates/limb_matches.h"
 #include "limber/rigging/templates/template_embedding.h"
 #include "limber/rigging/templates/template_skeleton.h"
 
@@ -30,7 +30,7 @@ std::vector<TemplateFit> fitVariants(const std::vector<TemplateVariant>& variant
 
 // How far a place (body space) is from all bones of a fit, beyond `radius` (heights): 0 near one, 1 where no bone comes
 // near.
-double farFromBones(const TemplateSkeleton& skeleton, const std::vector<Vec3>& places, const Vec3& place,
+double farFromBones(const TemplateSkeleton& skeleton, const std::vector<Vec3>& positions, const Vec3& position,
                     double radius);
 
 }  // namespace limber

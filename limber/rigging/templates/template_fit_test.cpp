@@ -37,15 +37,15 @@ TEST(TemplateFit, CountsWhatTheVariantCosts) {
 
 TEST(FarFromBones, IsNothingOnABoneAndOneFarAway) {
   const TemplateFit fit = personFacing(Vec3::UnitZ());
-  const std::vector<Vec3>& places = fit.embedding.places;
-  const Vec3 thigh =
-      0.5 * (places[fit.skeleton.find("leftUpperLeg").value()] + places[fit.skeleton.find("leftLowerLeg").value()]);
-  EXPECT_EQ(farFromBones(fit.skeleton, places, thigh, 0), 0);
-  EXPECT_EQ(farFromBones(fit.skeleton, places, thigh + Vec3(0, 0, 1), 0), 1);
-  const double between = farFromBones(fit.skeleton, places, thigh + Vec3(0, 0, 0.15), 0);
+  const std::vector<Vec3>& positions = fit.embedding.positions;
+  const Vec3 thigh = 0.5 * (positions[fit.skeleton.find("leftUpperLeg").value()] +
+                            positions[fit.skeleton.find("leftLowerLeg").value()]);
+  EXPECT_EQ(farFromBones(fit.skeleton, positions, thigh, 0), 0);
+  EXPECT_EQ(farFromBones(fit.skeleton, positions, thigh + Vec3(0, 0, 1), 0), 1);
+  const double between = farFromBones(fit.skeleton, positions, thigh + Vec3(0, 0, 0.15), 0);
   EXPECT_GT(between, 0);
   EXPECT_LT(between, 1);
-  EXPECT_LT(farFromBones(fit.skeleton, places, thigh + Vec3(0, 0, 0.15), 0.05), between);
+  EXPECT_LT(farFromBones(fit.skeleton, positions, thigh + Vec3(0, 0, 0.15), 0.05), between);
 }
 
 }  // namespace limber

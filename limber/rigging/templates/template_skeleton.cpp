@@ -12,9 +12,9 @@ namespace limber {
 
 namespace {
 
-constexpr double kStraight = 0.05;   // radians that a chain turns at a joint that lies between
-constexpr double kLeastBone = 0.04;  // heights of a bone whose end may be searched for
-constexpr double kSamePlace = 0.02;  // heights between a place and its mirror image
+constexpr double kStraight = 0.05;      // radians that a chain turns at a joint that lies between
+constexpr double kMinBone = 0.04;       // heights of a bone whose end may be searched for
+constexpr double kSamePosition = 0.02;  // heights between a place and its mirror image
 
 struct SideWord {
   std::string_view left, right;
@@ -42,9 +42,10 @@ void findMirrors(TemplateSkeleton& skeleton) {
     const std::optional<std::string> name = otherSide(skeleton.joints[j].name);
     const std::optional<Index> other = name ? skeleton.find(*name) : std::nullopt;
     if (!other) continue;
-    const Vec3 place = skeleton.joints[j].place, image = skeleton.joints[*other].place.cwiseProduct(Vec3(-1, 1, 1));
+    const Vec3 position = skeleton.joints[j].position,
+               image = skeleton.joints[*other].position.cwiseProduct(Vec3(-1, 1, 1));
     // Collars of motion files often stand in the middle both: those have no sides.
-    if ((image - place).norm() > kSamePlace || std::abs(place.x()) < 0.5 * kSamePlace) continue;
+    if ((image - position).norm() > kSamePosition || std::abs(position.x()) < 0.5 * kSamePosition) continue;
     skeleton.joints[j].mirror = other;
   }
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
@@ -69,11 +70,11 @@ void addTips(TemplateSkeleton& skeleton, const std::vector<Index>& children) {
       leaf.role = TemplateRole::kTip;
       continue;
     }
-    const Vec3 bone = leaf.parent ? Vec3(leaf.place - skeleton.joints[*leaf.parent].place) : Vec3(0, 0.2, 0);
+    const Vec3 bone = leaf.parent ? Vec3(leaf.position - skeleton.joints[*leaf.parent].position) : Vec3(0, 0.2, 0);
     TemplateJoint tip;
     tip.name = leaf.name + " tip";
     tip.parent = j;
-    tip.place = leaf.place + 0.5 * bone;
+    tip.position = leaf.position + 0.5 * bone;
     tip.role = TemplateRole::kTip;
     tip.turnSpread = 0.7;
     skeleton.joints.push_back(std::move(tip));
@@ -84,14 +85,14 @@ void chooseRoles(TemplateSkeleton& skeleton, const std::vector<Index>& children)
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
     TemplateJoint& joint = skeleton.joints[j];
     if (!joint.parent) continue;
-    const Vec3 above = joint.place - skeleton.joints[*joint.parent].place;
+    const Vec3 above = joint.position - skeleton.joints[*joint.parent].position;
     if (children[j] > 1) continue;
-    bool between = above.norm() < kLeastBone;
+    bool between = above.norm() < kMinBone;
     if (children[j] == 1) {
       const auto child = std::find_if(skeleton.joints.begin() + j + 1, skeleton.joints.end(),
                                       [&](const TemplateJoint& other) { return other.parent == j; });
-      const Vec3 below = child->place - joint.place;
-      between = between || below.norm() < kLeastBone ||
+      const Vec3 below = child->position - joint.position;
+      between = between || below.norm() < kMinBone ||
                 std::acos(std::clamp(above.normalized().dot(below.normalized()), -1.0, 1.0)) < kStraight;
     }
     if (between) joint.role = TemplateRole::kBetween;
@@ -137,8 +138,8 @@ TemplateSkeleton templateFrom(const Skeleton& skeleton, std::string_view name) {
     joint.name = skeleton.joints[j].name;
     joint.parent = skeleton.joints[j].parent;
     if (joint.parent) ++children[*joint.parent];
-    const Vec3 place = globals[j].translation() - Vec3(box.center().x(), box.min.y(), box.center().z());
-    joint.place = 0.95 * place / height;
+    const Vec3 position = globals[j].translation() - Vec3(box.center().x(), box.min.y(), box.center().z());
+    joint.position = 0.95 * position / height;
     result.joints.push_back(std::move(joint));
   }
   chooseRoles(result, children);

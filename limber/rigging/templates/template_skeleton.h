@@ -20,8 +20,8 @@ enum class TemplateRole {
 
 struct TemplateJoint {
   std::string name;
-  std::optional<Index> parent;  // before the joint
-  Vec3 place = Vec3::Zero();    // x to the body's left, y up from 0 (lowest) to 1 (highest), z to the front
+  std::optional<Index> parent;   // before the joint
+  Vec3 position = Vec3::Zero();  // x to the body's left, y up from 0 (lowest) to 1 (highest), z to the front
   TemplateRole role = TemplateRole::kPlaced;
   double lengthSpread = 0.4;  // standard deviation of the logarithm of the bone's length (from the placed joint above)
   double turnSpread = 0.5;    // of its direction, radians

@@ -15,12 +15,12 @@ namespace {
 Skeleton line(std::initializer_list<std::pair<const char*, Vec3>> joints) {
   Skeleton skeleton;
   Vec3 last = Vec3::Zero();
-  for (const auto& [name, place] : joints) {
+  for (const auto& [name, position] : joints) {
     Joint joint;
     joint.name = name;
     if (!skeleton.joints.empty()) joint.parent = skeleton.jointCount() - 1;
-    joint.rest.translation = place - last;
-    last = place;
+    joint.rest.translation = position - last;
+    last = position;
     skeleton.joints.push_back(joint);
   }
   return skeleton;
@@ -43,9 +43,9 @@ TEST(TemplateSkeleton, TablesAreSound) {
       if (joint.mirror) {
         const TemplateJoint& other = skeleton.joints[*joint.mirror];
         EXPECT_EQ(other.mirror, j);
-        EXPECT_EQ(other.place, joint.place.cwiseProduct(Vec3(-1, 1, 1)));
+        EXPECT_EQ(other.position, joint.position.cwiseProduct(Vec3(-1, 1, 1)));
       } else {
-        EXPECT_EQ(joint.place.x(), 0);
+        EXPECT_EQ(joint.position.x(), 0);
       }
       if (joint.role == TemplateRole::kPlaced && j > 0) {
         EXPECT_GT(joint.lengthSpread * joint.turnSpread, 0);
@@ -79,23 +79,24 @@ TEST(TemplateSkeleton, VariantsHaveOtherProportions) {
   const Index hips = *person.find("hips"), tip = *person.find("headTip"), foot = *person.find("leftFoot");
   const Index shoulder = *person.find("leftUpperArm"), hand = *person.find("leftHand");
   const auto armOf = [&](const TemplateSkeleton& skeleton) {
-    return (skeleton.joints[hand].place - skeleton.joints[shoulder].place).norm();
+    return (skeleton.joints[hand].position - skeleton.joints[shoulder].position).norm();
   };
   double longestArm = 0, highestHips = 0, lowestHips = 1;
   for (const TemplateVariant& variant : variants) {
     const std::vector<TemplateJoint>& joints = variant.skeleton.joints;
     EXPECT_GE(variant.cost, 0);
-    EXPECT_LT(joints[foot].place.y(), joints[hips].place.y());
-    EXPECT_EQ(joints[tip].place, person.joints[tip].place);
+    EXPECT_LT(joints[foot].position.y(), joints[hips].position.y());
+    EXPECT_EQ(joints[tip].position, person.joints[tip].position);
     for (const TemplateJoint& joint : joints) {
       if (!joint.mirror) continue;
-      EXPECT_LT((joints[*joint.mirror].place - joint.place.cwiseProduct(Vec3(-1, 1, 1))).norm(), 1e-12) << joint.name;
+      EXPECT_LT((joints[*joint.mirror].position - joint.position.cwiseProduct(Vec3(-1, 1, 1))).norm(), 1e-12)
+          << joint.name;
     }
     longestArm = std::max(longestArm, armOf(variant.skeleton));
-    highestHips = std::max(highestHips, joints[hips].place.y());
-    lowestHips = std::min(lowestHips, joints[hips].place.y());
+    highestHips = std::max(highestHips, joints[hips].position.y());
+    lowestHips = std::min(lowestHips, joints[hips].position.y());
   }
-  EXPECT_EQ(highestHips, person.joints[hips].place.y());
+  EXPECT_EQ(highestHips, person.joints[hips].position.y());
   EXPECT_LT(lowestHips, 0.25);
   EXPECT_GT(longestArm, 2 * armOf(person));
 }
@@ -112,7 +113,7 @@ TEST(TemplateSkeleton, BirdsMayFly) {
     EXPECT_EQ(flying.joints[j].role, bird.joints[j].role);
   }
   const Index wing = bird.find("leftWingTip").value();
-  EXPECT_GT(flying.joints[wing].place.x(), 1.5 * bird.joints[wing].place.x());
+  EXPECT_GT(flying.joints[wing].position.x(), 1.5 * bird.joints[wing].position.x());
 }
 
 TEST(TemplateSkeleton, AnimalsMayBeLongAndCarryTheirHeadsLow) {
@@ -121,11 +122,12 @@ TEST(TemplateSkeleton, AnimalsMayBeLongAndCarryTheirHeadsLow) {
   double lowest = 1, longest = 0;
   for (const TemplateVariant& variant : templateVariants(animal)) {
     EXPECT_GE(variant.cost, 0);
-    lowest = std::min(lowest, variant.skeleton.joints[head].place.y());
-    longest = std::max(longest, variant.skeleton.joints[head].place.z() - variant.skeleton.joints[tail].place.z());
+    lowest = std::min(lowest, variant.skeleton.joints[head].position.y());
+    longest =
+        std::max(longest, variant.skeleton.joints[head].position.z() - variant.skeleton.joints[tail].position.z());
   }
-  EXPECT_LT(lowest, animal.joints[head].place.y() - 0.1);
-  EXPECT_GT(longest, 1.2 * (animal.joints[head].place.z() - animal.joints[tail].place.z()));
+  EXPECT_LT(lowest, animal.joints[head].position.y() - 0.1);
+  EXPECT_GT(longest, 1.2 * (animal.joints[head].position.z() - animal.joints[tail].position.z()));
 }
 
 TEST(TemplateSkeleton, OfAUsersSkeleton) {
@@ -144,8 +146,8 @@ TEST(TemplateSkeleton, OfAUsersSkeleton) {
             3);
   EXPECT_EQ(skeleton.joints[3].mirror, Index{4});
   EXPECT_EQ(skeleton.joints[4].mirror, Index{3});
-  EXPECT_EQ(skeleton.joints[0].place.y(), 0);
-  EXPECT_NEAR(skeleton.joints[2].place.y(), 0.95, 1e-12);
+  EXPECT_EQ(skeleton.joints[0].position.y(), 0);
+  EXPECT_NEAR(skeleton.joints[2].position.y(), 0.95, 1e-12);
 }
 
 TEST(TemplateSkeleton, PairsInTheMiddleHaveNoSides) {

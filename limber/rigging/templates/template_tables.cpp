@@ -156,7 +156,7 @@ void addRow(TemplateSkeleton& skeleton, const Row& row, bool right) {
   TemplateJoint joint;
   joint.name = right ? rightName(row.name) : std::string(row.name);
   if (!row.parent.empty()) joint.parent = skeleton.find(right ? rightName(row.parent) : std::string(row.parent));
-  joint.place = Vec3(right ? -row.x : row.x, row.y, row.z);
+  joint.position = Vec3(right ? -row.x : row.x, row.y, row.z);
   joint.role = row.role;
   joint.lengthSpread = row.lengthSpread;
   joint.turnSpread = row.turnSpread;
@@ -215,10 +215,10 @@ std::vector<TemplateVariant> animalVariants(const TemplateSkeleton& skeleton, In
       TemplateVariant variant = {skeleton, low || length > 1 ? kRareAnimal : 0};
       std::vector<TemplateJoint>& joints = variant.skeleton.joints;
       if (low) {
-        joints[head].place = joints[neck].place + kLowHead;
-        joints[tip].place = joints[head].place + kLowHeadTip;
+        joints[head].position = joints[neck].position + kLowHead;
+        joints[tip].position = joints[head].position + kLowHeadTip;
       }
-      for (TemplateJoint& joint : joints) joint.place.z() *= length;
+      for (TemplateJoint& joint : joints) joint.position.z() *= length;
       variants.push_back(std::move(variant));
     }
   }
@@ -241,23 +241,23 @@ std::vector<TemplateVariant> templateVariants(const TemplateSkeleton& skeleton) 
   const std::optional<Index> hips = skeleton.find("hips"),
                              arms[] = {skeleton.find("leftUpperArm"), skeleton.find("rightUpperArm")};
   if (!hips || !arms[0] || !arms[1] || !skeleton.find("leftUpperLeg") || !skeleton.find("neck")) return {{skeleton, 0}};
-  const double hipY = skeleton.joints[*hips].place.y();
+  const double hipY = skeleton.joints[*hips].position.y();
   std::vector<TemplateVariant> variants;
   for (const Build& build : kBuilds) {
     TemplateVariant variant = {skeleton, build.cost};
     std::vector<TemplateJoint>& joints = variant.skeleton.joints;
     for (TemplateJoint& joint : joints) {
       if (joint.role == TemplateRole::kTip && !joint.mirror) continue;  // the top of the head stays
-      double& y = joint.place.y();
+      double& y = joint.position.y();
       y = y < hipY ? build.legs * y : y - (1 - build.legs) * hipY;
       y *= build.trunk;
     }
     for (const std::optional<Index>& arm : arms) {
-      const Vec3 shoulder = joints[*arm].place;
+      const Vec3 shoulder = joints[*arm].position;
       std::vector<bool> below(joints.size(), false);
       for (Index j = *arm + 1; j < variant.skeleton.jointCount(); ++j) {
         below[j] = joints[j].parent && (*joints[j].parent == *arm || below[*joints[j].parent]);
-        if (below[j]) joints[j].place = shoulder + build.arms * (joints[j].place - shoulder);
+        if (below[j]) joints[j].position = shoulder + build.arms * (joints[j].position - shoulder);
       }
     }
     variants.push_back(std::move(variant));

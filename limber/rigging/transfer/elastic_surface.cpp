@@ -13,9 +13,9 @@ namespace {
 
 // Cotangents of both corners opposite an edge add up to 1.15 where triangles are equilateral. Below the first an edge
 // would hold next to nothing, above the second, in slivers, it would be a rod.
-constexpr double kLeastWeight = 0.05, kMostWeight = 10;
+constexpr double kMinWeight = 0.05, kMaxWeight = 10;
 constexpr double kLinkWeight = 1;
-constexpr double kLeastScale = 0.5, kMostScale = 2;
+constexpr double kMinScale = 0.5, kMaxScale = 2;
 constexpr std::size_t kGrain = 512;
 
 using Edge = ElasticSurface::Edge;
@@ -31,7 +31,7 @@ std::vector<Edge> weightedEdges(const TriMesh& rest, std::span<const VertexPair>
       const Index a = t[(corner + 1) % 3], b = t[(corner + 2) % 3];
       const Vec3 u = rest.position(a) - rest.position(t[corner]), v = rest.position(b) - rest.position(t[corner]);
       const double area = u.cross(v).norm();
-      edges.push_back(edgeOf(a, b, area > 0 ? 0.5 * std::clamp(u.dot(v) / area, -kMostWeight, kMostWeight) : 0));
+      edges.push_back(edgeOf(a, b, area > 0 ? 0.5 * std::clamp(u.dot(v) / area, -kMaxWeight, kMaxWeight) : 0));
     }
   }
   const auto before = [](const Edge& x, const Edge& y) { return x.a != y.a ? x.a < y.a : x.b < y.b; };
@@ -45,7 +45,7 @@ std::vector<Edge> weightedEdges(const TriMesh& rest, std::span<const VertexPair>
     }
   }
   edges.resize(kept);
-  for (Edge& edge : edges) edge.weight = std::clamp(edge.weight, kLeastWeight, kMostWeight);
+  for (Edge& edge : edges) edge.weight = std::clamp(edge.weight, kMinWeight, kMaxWeight);
   for (const VertexPair& link : links) edges.push_back(edgeOf(link[0], link[1], kLinkWeight));
   std::stable_sort(edges.begin(), edges.end(), before);
   return edges;
@@ -111,7 +111,7 @@ std::vector<Mat3> ElasticSurface::frames(std::span<const Vec3> positions) const 
       if (!(size > 0)) continue;
       const Mat3 turn = bestRotation(correlation).toRotationMatrix();
       const double scale = turn.cwiseProduct(correlation).sum() / size;
-      result[v] = std::clamp(scale, kLeastScale, kMostScale) * turn;
+      result[v] = std::clamp(scale, kMinScale, kMaxScale) * turn;
     }
   });
   return result;
@@ -138,7 +138,7 @@ std::vector<Vec3> ElasticSurface::solve(std::span<const Mat3> frames, double sti
   factor_->factorize(matrix_);
   std::vector<double> x(SparseCholesky::kColumns * rest_.size(), 0);
   const auto row = [&](std::size_t v) {
-    return x.data() + std::size_t{SparseCholesky::kColumns} * factor_->place(static_cast<Index>(v));
+    return x.data() + std::size_t{SparseCholesky::kColumns} * factor_->rowOf(static_cast<Index>(v));
   };
   for (std::size_t v = 0; v < rest_.size(); ++v) std::copy_n(right[v].data(), 3, row(v));
   factor_->solve(x.data(), 3);

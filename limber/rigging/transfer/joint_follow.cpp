@@ -9,7 +9,7 @@ namespace limber {
 namespace {
 
 // Of the covariance's trace: how much an affine map is held to be a shift.
-constexpr double kHeldToShift = 0.02;
+constexpr double kPinnedToShift = 0.02;
 
 struct Moments {
   double weight = 0;
@@ -28,7 +28,7 @@ struct Moments {
   Vec3 originAfter() const {
     const Vec3 a = before / weight, b = after / weight;
     const Mat3 covariance = square / weight - a * a.transpose(), with = cross / weight - b * a.transpose();
-    const Mat3 hold = (kHeldToShift * covariance.trace() + 1e-300) * Mat3::Identity();
+    const Mat3 hold = (kPinnedToShift * covariance.trace() + 1e-300) * Mat3::Identity();
     const Mat3 map = (with + hold) * (covariance + hold).inverse();
     return b - map * a;
   }
@@ -36,7 +36,7 @@ struct Moments {
 
 }  // namespace
 
-std::vector<Vec3> followSurface(const Skeleton& skeleton, std::span<const Vec3> places, const TriMesh& before,
+std::vector<Vec3> followSurface(const Skeleton& skeleton, std::span<const Vec3> positions, const TriMesh& before,
                                 std::span<const Vec3> after, const SkinWeights& weights) {
   const std::vector<double> areas = vertexAreas(before);
   double total = 0;
@@ -56,19 +56,19 @@ std::vector<Vec3> followSurface(const Skeleton& skeleton, std::span<const Vec3> 
       const double weight = weights.weightsOf(v)[slot];
       if (!(weight > 0)) continue;
       for (const Index joint : near[weights.jointsOf(v)[slot]]) {
-        const Vec3 from = before.position(v) - places[joint];
+        const Vec3 from = before.position(v) - positions[joint];
         const double distance = from.squaredNorm() + least;
-        moments[joint].add(weight * areas[v] / (distance * distance), from, after[v] - places[joint]);
+        moments[joint].add(weight * areas[v] / (distance * distance), from, after[v] - positions[joint]);
       }
     }
   }
-  std::vector<Vec3> result(places.begin(), places.end());
+  std::vector<Vec3> result(positions.begin(), positions.end());
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
     const std::optional<Index> parent = skeleton.joints[j].parent;
     if (moments[j].weight > 0) {
       result[j] += moments[j].originAfter();
     } else if (parent) {
-      result[j] += result[*parent] - places[*parent];
+      result[j] += result[*parent] - positions[*parent];
     }
   }
   return result;

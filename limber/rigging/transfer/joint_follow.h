@@ -19,7 +19,7 @@ namespace limber {
 // weights  of the surface's vertices over the skeleton's joints
 // Joints that no vertex hangs on move as the joint above does; roots then stay.
 // Cost: O(#V slots + #J).
-std::vector<Vec3> followSurface(const Skeleton& skeleton, std::span<const Vec3> places, const TriMesh& before,
+std::vector<Vec3> followSurface(const Skeleton& skeleton, std::span<const Vec3> positions, const TriMesh& before,
                                 std::span<const Vec3> after, const SkinWeights& weights);
 
 }  // namespace limber

@@ -15,9 +15,9 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kLeastLandmarks = 3;
+constexpr std::size_t kMinLandmarks = 3;
 // Bones of people of one height differ less; what differs more was not meant to be the same bone.
-constexpr double kLeastStretch = 0.4, kMostStretch = 2.5;
+constexpr double kMinStretch = 0.4, kMaxStretch = 2.5;
 constexpr std::size_t kBlendGrain = 1024;
 
 struct Similarity {
@@ -32,12 +32,12 @@ Similarity bodySimilarity(std::span<const Affine> globals, std::span<const Joint
   const double count = static_cast<double>(landmarks.size());
   for (const JointLandmark& landmark : landmarks) {
     from += globals[landmark.joint].translation() / count;
-    to += landmark.place / count;
+    to += landmark.position / count;
   }
   Mat3 correlation = Mat3::Zero();
   double size = 0;
   for (const JointLandmark& landmark : landmarks) {
-    const Vec3 a = globals[landmark.joint].translation() - from, b = landmark.place - to;
+    const Vec3 a = globals[landmark.joint].translation() - from, b = landmark.position - to;
     correlation += b * a.transpose();
     size += a.squaredNorm();
   }
@@ -54,18 +54,18 @@ Similarity bodySimilarity(std::span<const Affine> globals, std::span<const Joint
 class Alignment {
  public:
   Alignment(const Skeleton& skeleton, std::span<const Affine> globals, std::span<const JointLandmark> landmarks)
-      : skeleton_(skeleton), whole_(bodySimilarity(globals, landmarks)), place_(skeleton.jointCount()) {
+      : skeleton_(skeleton), whole_(bodySimilarity(globals, landmarks)), target_(skeleton.jointCount()) {
     Box box;
     for (const Affine& global : globals) {
       rest_.push_back(global.translation());
       box.add(rest_.back());
     }
-    leastSquare_ = 1e-6 * box.size().squaredNorm() + 1e-300;
+    minSquare_ = 1e-6 * box.size().squaredNorm() + 1e-300;
     children_.resize(rest_.size());
     for (Index j = 0; j < skeleton.jointCount(); ++j) {
       if (skeleton.joints[j].parent) children_[*skeleton.joints[j].parent].push_back(j);
     }
-    for (const JointLandmark& landmark : landmarks) place_[landmark.joint] = landmark.place;
+    for (const JointLandmark& landmark : landmarks) target_[landmark.joint] = landmark.position;
   }
 
   LimbAlignment run() {
@@ -76,17 +76,17 @@ class Alignment {
       const std::optional<Index> parent = skeleton_.joints[j].parent;
       const Affine& above = parent ? result.maps[*parent] : whole_.map;
       const Quat turnAbove = parent ? result.rotations[*parent] : whole_.turn;
-      const Vec3 place = place_[j] ? *place_[j] : Vec3(above * rest_[j]);
-      result.rotations.push_back(turnOf(j, place, turnAbove));
-      result.maps.push_back(mapOf(j, place, result.rotations[j]));
-      result.places.push_back(place);
+      const Vec3 position = target_[j] ? *target_[j] : Vec3(above * rest_[j]);
+      result.rotations.push_back(turnOf(j, position, turnAbove));
+      result.maps.push_back(mapOf(j, position, result.rotations[j]));
+      result.positions.push_back(position);
     }
     return result;
   }
 
  private:
   struct Below {
-    Vec3 rest = Vec3::Zero(), place = Vec3::Zero();
+    Vec3 rest = Vec3::Zero(), position = Vec3::Zero();
     double weight = 0;
   };
 
@@ -94,13 +94,13 @@ class Alignment {
   // between head and hands.
   void addBelow(Index from, Index joint, Below& below) const {
     for (const Index child : children_[joint]) {
-      if (!place_[child]) {
+      if (!target_[child]) {
         addBelow(from, child, below);
         continue;
       }
-      const double weight = 1 / std::max((rest_[child] - rest_[from]).squaredNorm(), leastSquare_);
+      const double weight = 1 / std::max((rest_[child] - rest_[from]).squaredNorm(), minSquare_);
       below.rest += weight * rest_[child];
-      below.place += weight * *place_[child];
+      below.position += weight * *target_[child];
       below.weight += weight;
     }
   }
@@ -109,77 +109,79 @@ class Alignment {
     std::vector<std::optional<Index>> placedAbove(rest_.size());
     for (Index j = 0; j < skeleton_.jointCount(); ++j) {
       const std::optional<Index> parent = skeleton_.joints[j].parent;
-      const std::optional<Index> above = parent ? (place_[*parent] ? parent : placedAbove[*parent]) : std::nullopt;
+      const std::optional<Index> above = parent ? (target_[*parent] ? parent : placedAbove[*parent]) : std::nullopt;
       placedAbove[j] = above;
-      if (place_[j]) continue;
+      if (target_[j]) continue;
       Below below;
       addBelow(j, j, below);
       if (below.weight == 0) continue;
       below.rest /= below.weight;
-      below.place /= below.weight;
-      const Vec3 fromBelow = below.place + whole_.map.linear() * (rest_[j] - below.rest);
+      below.position /= below.weight;
+      const Vec3 fromBelow = below.position + whole_.map.linear() * (rest_[j] - below.rest);
       if (!above) {
-        place_[j] = fromBelow;
+        target_[j] = fromBelow;
         continue;
       }
-      const Vec3 way = whole_.turn * (below.rest - rest_[*above]), wayThere = below.place - *place_[*above];
-      const double length = way.norm();
+      const Vec3 displacement = whole_.turn * (below.rest - rest_[*above]),
+                 targetOffset = below.position - *target_[*above];
+      const double length = displacement.norm();
       if (!(length > 0)) {
-        place_[j] = fromBelow;
+        target_[j] = fromBelow;
         continue;
       }
-      const Quat turn = shortestRotation(way, wayThere) * whole_.turn;
-      place_[j] = *place_[*above] + wayThere.norm() / length * (turn * (rest_[j] - rest_[*above]));
+      const Quat turn = shortestRotation(displacement, targetOffset) * whole_.turn;
+      target_[j] = *target_[*above] + targetOffset.norm() / length * (turn * (rest_[j] - rest_[*above]));
     }
   }
 
-  Quat turnOf(Index joint, const Vec3& place, const Quat& above) const {
+  Quat turnOf(Index joint, const Vec3& position, const Quat& above) const {
     Mat3 correlation = Mat3::Zero();
     for (const Index child : children_[joint]) {
-      if (place_[child]) correlation += (*place_[child] - place) * (above * (rest_[child] - rest_[joint])).transpose();
+      if (target_[child])
+        correlation += (*target_[child] - position) * (above * (rest_[child] - rest_[joint])).transpose();
     }
     return (bestRotation(correlation) * above).normalized();
   }
 
-  Affine mapOf(Index joint, const Vec3& place, const Quat& turn) const {
+  Affine mapOf(Index joint, const Vec3& position, const Quat& turn) const {
     Vec3 along = Vec3::Zero();
     double rest = 0, there = 0;
     for (const Index child : children_[joint]) {
-      if (!place_[child]) continue;
-      const Vec3 way = rest_[child] - rest_[joint];
-      along += way;
-      rest += way.norm();
-      there += (*place_[child] - place).norm();
+      if (!target_[child]) continue;
+      const Vec3 displacement = rest_[child] - rest_[joint];
+      along += displacement;
+      rest += displacement.norm();
+      there += (*target_[child] - position).norm();
     }
     Mat3 stretch = Mat3::Identity();
     // Where ways down part, as at hips, the sum of them is no direction to stretch along.
     if (rest > 0 && along.norm() > 0.9 * rest) {
-      const double ratio = std::clamp(there / (rest * whole_.scale), kLeastStretch, kMostStretch);
+      const double ratio = std::clamp(there / (rest * whole_.scale), kMinStretch, kMaxStretch);
       along.normalize();
       stretch += (ratio - 1) * along * along.transpose();
     }
     Affine map = Affine::Identity();
     map.linear() = whole_.scale * turn.toRotationMatrix() * stretch;
-    map.translation() = place - map.linear() * rest_[joint];
+    map.translation() = position - map.linear() * rest_[joint];
     return map;
   }
 
   const Skeleton& skeleton_;
   Similarity whole_;
   std::vector<Vec3> rest_;
-  double leastSquare_ = 0;  // squared distance, so that a joint in the place of another counts finitely
+  double minSquare_ = 0;  // squared distance, so that a joint in the place of another counts finitely
   std::vector<std::vector<Index>> children_;
-  std::vector<std::optional<Vec3>> place_;
+  std::vector<std::optional<Vec3>> target_;
 };
 
 void checkLandmarks(const Skeleton& skeleton, std::span<const JointLandmark> landmarks) {
-  if (landmarks.size() < kLeastLandmarks) {
+  if (landmarks.size() < kMinLandmarks) {
     throw Error(ErrorCode::kBadArgument, fmt::format("{} landmarks, but a body is laid on another by {} or more",
-                                                     landmarks.size(), kLeastLandmarks));
+                                                     landmarks.size(), kMinLandmarks));
   }
   std::vector<bool> seen(skeleton.jointCount(), false);
   for (const JointLandmark& landmark : landmarks) {
-    if (landmark.joint >= skeleton.jointCount() || seen[landmark.joint] || !landmark.place.allFinite()) {
+    if (landmark.joint >= skeleton.jointCount() || seen[landmark.joint] || !landmark.position.allFinite()) {
       throw Error(ErrorCode::kBadArgument, fmt::format("the landmark of joint {} fits no joint", landmark.joint));
     }
     seen[landmark.joint] = true;
@@ -194,15 +196,15 @@ LimbAlignment alignLimbs(const Skeleton& skeleton, std::span<const Affine> globa
   return Alignment(skeleton, globals, landmarks).run();
 }
 
-std::vector<Quat> turnsBetween(const Skeleton& skeleton, std::span<const Affine> globals, std::span<const Vec3> places,
-                               const Quat& whole) {
+std::vector<Quat> turnsBetween(const Skeleton& skeleton, std::span<const Affine> globals,
+                               std::span<const Vec3> positions, const Quat& whole) {
   std::vector<Mat3> correlations(skeleton.jointCount(), Mat3::Zero());
   std::vector<Quat> turns;
   // Ways below a joint, before they are turned as the joint above it is.
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
     if (const std::optional<Index> parent = skeleton.joints[j].parent) {
       correlations[*parent] +=
-          (places[j] - places[*parent]) * (globals[j].translation() - globals[*parent].translation()).transpose();
+          (positions[j] - positions[*parent]) * (globals[j].translation() - globals[*parent].translation()).transpose();
     }
   }
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
@@ -213,14 +215,14 @@ std::vector<Quat> turnsBetween(const Skeleton& skeleton, std::span<const Affine>
   return turns;
 }
 
-Skeleton movedSkeleton(const Skeleton& skeleton, std::span<const Affine> globals, std::span<const Vec3> places,
+Skeleton movedSkeleton(const Skeleton& skeleton, std::span<const Affine> globals, std::span<const Vec3> positions,
                        std::span<const Quat> rotations) {
   Skeleton result = skeleton;
   std::vector<Affine> moved;
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
     Affine wanted = Affine::Identity();
     wanted.linear() = rotations[j].toRotationMatrix() * globals[j].linear();
-    wanted.translation() = places[j];
+    wanted.translation() = positions[j];
     const std::optional<Index> parent = skeleton.joints[j].parent;
     const Affine above = parent ? moved[*parent] : Affine::Identity();
     result.joints[j].rest = decompose(above.inverse(Eigen::Affine) * wanted);

@@ -12,7 +12,7 @@ namespace limber {
 // Where a joint of the source lies in the target.
 struct JointLandmark {
   Index joint = 0;
-  Vec3 place = Vec3::Zero();
+  Vec3 position = Vec3::Zero();
 };
 
 // places     #J, where each joint comes to lie
@@ -20,7 +20,7 @@ struct JointLandmark {
 // maps       #J, from the source's space to the target's: the turn, and a stretch that brings it to the joints below
 // whole      the similarity of the whole body, for what no joint holds
 struct LimbAlignment {
-  std::vector<Vec3> places;
+  std::vector<Vec3> positions;
   std::vector<Quat> rotations;
   std::vector<Affine> maps;
   Affine whole = Affine::Identity();
@@ -37,12 +37,12 @@ LimbAlignment alignLimbs(const Skeleton& skeleton, std::span<const Affine> globa
                          std::span<const JointLandmark> landmarks);
 
 // Joints at rest in the places of the alignment, each turned as it turns them: names, tree, axes and scales are kept.
-Skeleton movedSkeleton(const Skeleton& skeleton, std::span<const Affine> globals, std::span<const Vec3> places,
+Skeleton movedSkeleton(const Skeleton& skeleton, std::span<const Affine> globals, std::span<const Vec3> positions,
                        std::span<const Quat> rotations);
 
 // How joints turn when they come to lie at `places`, all of them known. `whole` turns the roots.
-std::vector<Quat> turnsBetween(const Skeleton& skeleton, std::span<const Affine> globals, std::span<const Vec3> places,
-                               const Quat& whole);
+std::vector<Quat> turnsBetween(const Skeleton& skeleton, std::span<const Affine> globals,
+                               std::span<const Vec3> positions, const Quat& whole);
 
 // The surface as the joints' maps take it: linear blend.
 std::vector<Vec3f> alignedSurface(std::span<const Vec3f> positions, const SkinWeights& weights,

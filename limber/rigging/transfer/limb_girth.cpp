@@ -11,13 +11,13 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kMostRays = 200;
-constexpr std::size_t kLeastRays = 8;
+constexpr std::size_t kMaxRays = 200;
+constexpr std::size_t kMinRays = 8;
 // Rays in lengths from the bone to the vertex: as far as they are followed, and how far behind a triangle they go on.
 constexpr double kRayLength = 12, kPast = 1e-4;
-constexpr std::size_t kMostCrossings = 32;
+constexpr std::size_t kMaxCrossings = 32;
 // Heads of toys are five times as large as those of people of their height.
-constexpr double kLeastGirth = 1.0 / 6, kMostGirth = 6;
+constexpr double kMinGirth = 1.0 / 6, kMaxGirth = 6;
 
 // The part of the body that one joint carries: vertices that hang on it most, or on joints that go along with it.
 struct Carried {
@@ -58,7 +58,7 @@ class GirthFit {
   // The median of how much farther the target is from the bone; 1 where that cannot be told.
   double girth(Index joint, const Carried& part, const TriMesh& source, const Bvh& sourceTree, const TriMesh& target,
                const Bvh& targetTree, const Affine& map) const {
-    const std::size_t step = (part.vertices.size() + kMostRays - 1) / kMostRays;
+    const std::size_t step = (part.vertices.size() + kMaxRays - 1) / kMaxRays;
     std::size_t rays = 0;
     std::vector<double> ratios;
     for (std::size_t i = 0; i < part.vertices.size(); i += step) {
@@ -69,10 +69,10 @@ class GirthFit {
       const std::optional<double> here = leaves(targetTree, target, map * from, map.linear() * (to - from));
       if (here) ratios.push_back(*here / *there);
     }
-    if (rays < kLeastRays || 2 * ratios.size() < rays) return 1;
+    if (rays < kMinRays || 2 * ratios.size() < rays) return 1;
     const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
     std::nth_element(ratios.begin(), middle, ratios.end());
-    return std::clamp(*middle, kLeastGirth, kMostGirth);
+    return std::clamp(*middle, kMinGirth, kMaxGirth);
   }
 
   // Parents before children; what goes along with a joint is moved as that is.
@@ -80,10 +80,10 @@ class GirthFit {
     std::vector<Affine> grown(rest_.size(), Affine::Identity());
     for (Index j = 0; j < rest_.size(); ++j) {
       if (carrier_[j] == j) {
-        grown[j] = about(alignment.places[j], girths[j], alongBone(j, parts[j], alignment));
+        grown[j] = about(alignment.positions[j], girths[j], alongBone(j, parts[j], alignment));
       } else {
         grown[j] = grown[carrier_[j]];
-        alignment.places[j] = grown[j] * alignment.places[j];
+        alignment.positions[j] = grown[j] * alignment.positions[j];
       }
       alignment.maps[j] = grown[j] * alignment.maps[j];
     }
@@ -101,8 +101,9 @@ class GirthFit {
 
   // The parameter at which a ray leaves the solids that it starts in, all of them; those that it meets first where it
   // starts in none. Nothing where it meets none.
-  static std::optional<double> leaves(const Bvh& tree, const TriMesh& mesh, const Vec3& from, const Vec3& way) {
-    if (!(way.squaredNorm() > 0)) return std::nullopt;
+  static std::optional<double> leaves(const Bvh& tree, const TriMesh& mesh, const Vec3& from,
+                                      const Vec3& displacement) {
+    if (!(displacement.squaredNorm() > 0)) return std::nullopt;
     struct Crossing {
       double at;
       int depth;
@@ -110,13 +111,13 @@ class GirthFit {
     std::vector<Crossing> crossings;
     int inside = 0;  // solids round the start: those that the ray leaves but never enters
     double at = 0;
-    while (crossings.size() < kMostCrossings) {
-      const std::optional<SurfacePoint> hit = tree.firstHit(from + at * way, way, kRayLength);
+    while (crossings.size() < kMaxCrossings) {
+      const std::optional<SurfacePoint> hit = tree.firstHit(from + at * displacement, displacement, kRayLength);
       if (!hit) break;
       at += hit->distance + kPast;
       const auto& [a, b, c] = mesh.triangles[hit->triangle];
       const Vec3 normal = (mesh.position(b) - mesh.position(a)).cross(mesh.position(c) - mesh.position(a));
-      crossings.push_back({at, normal.dot(way) > 0 ? -1 : 1});
+      crossings.push_back({at, normal.dot(displacement) > 0 ? -1 : 1});
       inside -= crossings.back().depth;
     }
     int depth = std::max(inside, 0);
@@ -129,15 +130,15 @@ class GirthFit {
 
   static Vec3 alongBone(Index joint, const Carried& part, const LimbAlignment& alignment) {
     if (!part.end) return Vec3::Zero();
-    const Vec3 along = alignment.places[*part.end] - alignment.places[joint];
+    const Vec3 along = alignment.positions[*part.end] - alignment.positions[joint];
     return along.squaredNorm() > 0 ? Vec3(along.normalized()) : Vec3(Vec3::Zero());
   }
 
   // Scales about a place, but not along the unit vector; a zero vector: in all directions.
-  static Affine about(const Vec3& place, double scale, const Vec3& along) {
+  static Affine about(const Vec3& position, double scale, const Vec3& along) {
     Affine result = Affine::Identity();
     result.linear() = scale * Mat3::Identity() + (1 - scale) * along * along.transpose();
-    result.translation() = place - result.linear() * place;
+    result.translation() = position - result.linear() * position;
     return result;
   }
 

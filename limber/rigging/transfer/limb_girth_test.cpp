@@ -19,7 +19,7 @@ LimbAlignment fitted(const std::vector<JointLandmark>& landmarks, const TriMesh&
 }
 
 std::vector<JointLandmark> ownLandmarks() {
-  return testing::landmarksAt(testing::jointPlaces(testing::capsulePerson().skeleton));
+  return testing::landmarksAt(testing::jointPositions(testing::capsulePerson().skeleton));
 }
 
 TEST(LimbGirthTest, OfTheSameBodyIsAsItWas) {
@@ -34,7 +34,7 @@ TEST(LimbGirthTest, OfASimilarBodyIsTheSimilarity) {
   similarity.linear() = 0.3 * Eigen::AngleAxisd(2, Vec3(1, 2, 0).normalized()).toRotationMatrix();
   similarity.translation() = Vec3(1, 2, 3);
   std::vector<JointLandmark> landmarks = ownLandmarks();
-  for (JointLandmark& landmark : landmarks) landmark.place = similarity * landmark.place;
+  for (JointLandmark& landmark : landmarks) landmark.position = similarity * landmark.position;
   std::erase_if(landmarks, [](const JointLandmark& l) { return l.joint == kHand; });  // goes along with the arm
   const LimbAlignment alignment = fitted(
       landmarks, testing::mapped(testing::capsulePerson().mesh, [&](const Vec3& p) -> Vec3 { return similarity * p; }));
@@ -66,7 +66,7 @@ RiggedBody rod(double radius) {
 TEST(LimbGirthTest, ThickensALimbButDoesNotLengthenIt) {
   const RiggedBody thin = rod(0.1), thick = rod(0.2);
   const std::vector<Affine> globals = restGlobals(thin.skeleton);
-  const std::vector<JointLandmark> landmarks = testing::landmarksAt(testing::jointPlaces(thin.skeleton));
+  const std::vector<JointLandmark> landmarks = testing::landmarksAt(testing::jointPositions(thin.skeleton));
   LimbAlignment alignment = alignLimbs(thin.skeleton, globals, landmarks);
   fitGirths(thin.skeleton, globals, landmarks, thin.mesh, thin.weights, thick.mesh, alignment);
   EXPECT_LT((alignment.maps[1] * Vec3(1.5, 0.1, 0) - Vec3(1.5, 0.2, 0)).norm(), 1e-3);
@@ -80,7 +80,7 @@ TEST(LimbGirthTest, ThickensALimbButDoesNotLengthenIt) {
 
 // A head three times as large about its joint: found, and as large all round.
 TEST(LimbGirthTest, GrowsAHead) {
-  const Vec3 neck = testing::personJoints()[kHead].place;
+  const Vec3 neck = testing::personJoints()[kHead].position;
   TriMesh target = testing::capsulePerson().mesh;
   const std::size_t ofEach = target.positions.size() / testing::personJoints().size();
   for (std::size_t v = kHead * ofEach; v < (kHead + 1) * ofEach; ++v) {
@@ -108,7 +108,7 @@ TEST(LimbGirthTest, TakesAnOpenTarget) {
   target.triangles.push_back({0, 0, 1});
   const LimbAlignment alignment = fitted(ownLandmarks(), target);
   for (const Affine& map : alignment.maps) EXPECT_TRUE(map.matrix().allFinite());
-  for (const Vec3& place : alignment.places) EXPECT_TRUE(place.allFinite());
+  for (const Vec3& position : alignment.positions) EXPECT_TRUE(position.allFinite());
 }
 
 }  // namespace

@@ -68,9 +68,9 @@ RigTransfer transferRig(const RiggedBody& source, std::span<const JointLandmark>
   result.registered = registerSurface(aligned, links, goal, options.registration, progress);
 
   progress.step("joints and weights");
-  result.places = followSurface(source.skeleton, alignment.places, aligned, result.registered, source.weights);
+  result.positions = followSurface(source.skeleton, alignment.positions, aligned, result.registered, source.weights);
   const Quat whole(alignment.whole.rotation());
-  result.turns = turnsBetween(source.skeleton, globals, result.places, whole);
+  result.turns = turnsBetween(source.skeleton, globals, result.positions, whole);
   for (std::size_t v = 0; v < result.registered.size(); ++v) {
     aligned.positions[v] = result.registered[v].cast<float>();
   }

@@ -23,7 +23,7 @@ struct RigTransferOptions {
 };
 
 struct RigTransfer {
-  std::vector<Vec3> places;          // #J, of the source's joints in the target
+  std::vector<Vec3> positions;       // #J, of the source's joints in the target
   std::vector<Quat> turns;           // #J, by which each is turned (movedSkeleton makes a skeleton of both)
   SkinWeights weights;               // of the target's vertices
   TriMesh source;                    // the source's surface at rest, facing outwards

@@ -12,7 +12,7 @@ namespace limber {
 namespace {
 
 using testing::capsulePerson;
-using testing::jointPlaces;
+using testing::jointPositions;
 using testing::landmarksAt;
 
 constexpr double kHeight = 1.76;  // of the person
@@ -55,11 +55,11 @@ double meanDistance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
 }
 
 // Landmarks as far off as a template's are.
-std::vector<JointLandmark> roughLandmarks(std::vector<Vec3> places, double off) {
-  for (std::size_t j = 0; j < places.size(); ++j) {
-    places[j] += off * Vec3(std::sin(3.0 * j), std::cos(5.0 * j), std::sin(7.0 * j)).normalized();
+std::vector<JointLandmark> roughLandmarks(std::vector<Vec3> positions, double off) {
+  for (std::size_t j = 0; j < positions.size(); ++j) {
+    positions[j] += off * Vec3(std::sin(3.0 * j), std::cos(5.0 * j), std::sin(7.0 * j)).normalized();
   }
-  return landmarksAt(places);
+  return landmarksAt(positions);
 }
 
 RigTransfer transferPerson(const RiggedBody& source, const std::vector<JointLandmark>& landmarks,
@@ -72,9 +72,9 @@ RigTransfer transferPerson(const RiggedBody& source, const std::vector<JointLand
 
 TEST(RigTransferTest, GivesACopyItsOwnRig) {
   const RiggedBody person = capsulePerson();
-  const std::vector<Vec3> places = jointPlaces(person.skeleton);
-  const RigTransfer result = transferPerson(person, roughLandmarks(places, 0.03), person.mesh);
-  EXPECT_LT(farthest(result.places, places), 1e-3);
+  const std::vector<Vec3> positions = jointPositions(person.skeleton);
+  const RigTransfer result = transferPerson(person, roughLandmarks(positions, 0.03), person.mesh);
+  EXPECT_LT(farthest(result.positions, positions), 1e-3);
   EXPECT_LT(meanL1(result.weights, person.weights, person.skeleton.jointCount()), 0.01);
   EXPECT_LT(result.gaps.rms, 0.1);
 }
@@ -84,11 +84,11 @@ TEST(RigTransferTest, FollowsATurnedAndScaledCopy) {
   Affine map = Affine::Identity();
   map.linear() = 2.5 * Eigen::AngleAxisd(1.2, Vec3(0.3, 1, -0.2).normalized()).toRotationMatrix();
   map.translation() = Vec3(3, -1, 0.5);
-  std::vector<Vec3> places = jointPlaces(person.skeleton);
-  for (Vec3& place : places) place = map * place;
+  std::vector<Vec3> positions = jointPositions(person.skeleton);
+  for (Vec3& position : positions) position = map * position;
   const TriMesh target = testing::mapped(person.mesh, [&](const Vec3& p) { return Vec3(map * p); });
-  const RigTransfer result = transferPerson(person, roughLandmarks(places, 0.05), target);
-  EXPECT_LT(farthest(result.places, places), 0.01);
+  const RigTransfer result = transferPerson(person, roughLandmarks(positions, 0.05), target);
+  EXPECT_LT(farthest(result.positions, positions), 0.01);
   EXPECT_LT(meanL1(result.weights, person.weights, person.skeleton.jointCount()), 0.02);
   for (const Quat& turn : result.turns) {
     EXPECT_LT(turn.angularDistance(Quat(Mat3(map.linear() / 2.5))), 0.03);
@@ -97,10 +97,10 @@ TEST(RigTransferTest, FollowsATurnedAndScaledCopy) {
 
 TEST(RigTransferTest, GivesAFinerCopyTheSameWeights) {
   const RiggedBody person = capsulePerson();
-  const std::vector<Vec3> places = jointPlaces(person.skeleton);
+  const std::vector<Vec3> positions = jointPositions(person.skeleton);
   const TriMesh fine = testing::cutInFour(person.mesh);
-  const RigTransfer result = transferPerson(person, roughLandmarks(places, 0.02), fine);
-  EXPECT_LT(farthest(result.places, places), 2e-3);
+  const RigTransfer result = transferPerson(person, roughLandmarks(positions, 0.02), fine);
+  EXPECT_LT(farthest(result.positions, positions), 2e-3);
   EXPECT_EQ(result.weights.vertexCount(), fine.vertexCount());
   EXPECT_LT(meanL1(result.weights, person.weights, person.skeleton.jointCount()), 0.02);
   expectSumsOfOne(result.weights);
@@ -113,10 +113,11 @@ TEST(RigTransferTest, FollowsASmoothDeformation) {
     const double thick = 1 + 0.15 * std::sin(2 * p.y());
     return Vec3(thick * p.x(), 1.1 * p.y() + 0.03 * std::sin(4 * p.y()), 1.2 * p.z() + 0.05 * p.y() * p.y());
   };
-  std::vector<Vec3> places = jointPlaces(person.skeleton);
-  for (Vec3& place : places) place = deform(place);
-  const RigTransfer result = transferPerson(person, roughLandmarks(places, 0.03), testing::mapped(person.mesh, deform));
-  EXPECT_LT(meanDistance(result.places, places), 0.01 * kHeight);
+  std::vector<Vec3> positions = jointPositions(person.skeleton);
+  for (Vec3& position : positions) position = deform(position);
+  const RigTransfer result =
+      transferPerson(person, roughLandmarks(positions, 0.03), testing::mapped(person.mesh, deform));
+  EXPECT_LT(meanDistance(result.positions, positions), 0.01 * kHeight);
   EXPECT_LT(meanL1(result.weights, person.weights, person.skeleton.jointCount()), 0.15);
 }
 
@@ -130,8 +131,8 @@ TEST(RigTransferTest, FollowsAnotherPose) {
   for (std::size_t j = 0; j < from.size(); ++j) pose.maps.push_back(to[j] * from[j].inverse());
   TriMesh target = person.mesh;
   target.positions = alignedSurface(person.mesh.positions, person.weights, pose);
-  const RigTransfer result = transferPerson(person, roughLandmarks(jointPlaces(lowered), 0.02), target);
-  EXPECT_LT(meanDistance(result.places, jointPlaces(lowered)), 0.01 * kHeight);
+  const RigTransfer result = transferPerson(person, roughLandmarks(jointPositions(lowered), 0.02), target);
+  EXPECT_LT(meanDistance(result.positions, jointPositions(lowered)), 0.01 * kHeight);
   EXPECT_LT(meanL1(result.weights, person.weights, person.skeleton.jointCount()), 0.15);
 }
 
@@ -142,14 +143,14 @@ TEST(RigTransferTest, BindsAtMostAsManyJointsAsAskedFor) {
   options.registration.reaches = {0.05};
   Progress progress;
   const RigTransfer result =
-      transferRig(person, landmarksAt(jointPlaces(person.skeleton)), person.mesh, options, progress);
+      transferRig(person, landmarksAt(jointPositions(person.skeleton)), person.mesh, options, progress);
   EXPECT_EQ(result.weights.slots, 1u);
   expectSumsOfOne(result.weights);
 }
 
 TEST(RigTransferTest, GivesTheSameEveryTime) {
   const RiggedBody person = capsulePerson();
-  const auto landmarks = roughLandmarks(jointPlaces(person.skeleton), 0.03);
+  const auto landmarks = roughLandmarks(jointPositions(person.skeleton), 0.03);
   RigTransferOptions options;
   options.registration.reaches = {0.1, 0.02};
   options.registration.rounds = 1;
@@ -158,7 +159,7 @@ TEST(RigTransferTest, GivesTheSameEveryTime) {
   const RigTransfer b = transferRig(person, landmarks, person.mesh, options, progress);
   EXPECT_EQ(a.weights.weights, b.weights.weights);
   EXPECT_EQ(a.weights.joints, b.weights.joints);
-  EXPECT_EQ(farthest(a.places, b.places), 0);
+  EXPECT_EQ(farthest(a.positions, b.positions), 0);
 }
 
 }  // namespace

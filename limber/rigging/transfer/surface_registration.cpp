@@ -13,9 +13,9 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kMostTargetPoints = 20000;
+constexpr std::size_t kMaxTargetPoints = 20000;
 // A goal may be as far as a pull spreads, and this part of the target's longest side where pulls spread less.
-constexpr double kLeastDistance = 0.03;
+constexpr double kMinDistance = 0.03;
 // Cosine: normals that differ by more do not speak for each other.
 constexpr double kAgree = 0.5;
 // What holds vertices without a goal where they are, against a pull of 1: next to nothing.
@@ -36,7 +36,7 @@ std::vector<Vec3> unitNormals(std::span<const Vec3f> positions, std::span<const 
 std::vector<TargetPoint> pointsOf(const TriMesh& target) {
   const std::vector<Vec3> normals = areaNormals<Vec3f>(target.positions, target.triangles);
   const std::vector<double> areas = vertexAreas(target);
-  const std::size_t step = (target.positions.size() + kMostTargetPoints - 1) / kMostTargetPoints;
+  const std::size_t step = (target.positions.size() + kMaxTargetPoints - 1) / kMaxTargetPoints;
   std::vector<TargetPoint> points;
   for (Index v = 0; v < target.vertexCount(); v += static_cast<Index>(step)) {
     if (areas[v] > 0)
@@ -75,7 +75,7 @@ class Registration {
 
   void round(double reach) {
     for (std::size_t v = 0; v < positions_.size(); ++v) moved_.positions[v] = positions_[v].cast<float>();
-    const double most = std::max(reach, kLeastDistance) * side_;
+    const double most = std::max(reach, kMinDistance) * side_;
     const double hold = kHold * side_ * side_ / static_cast<double>(positions_.size());
     for (std::size_t v = 0; v < positions_.size(); ++v) {
       pulls_[v] = hold;
@@ -125,12 +125,12 @@ class Registration {
     });
     for (std::size_t i = 0; i < pulls.size(); ++i) {
       if (!(pulls[i].weight > 0)) continue;
-      const Vec3 way = targetPoints_[i].position - pulls[i].at.position;
+      const Vec3 displacement = targetPoints_[i].position - pulls[i].at.position;
       for (std::size_t corner = 0; corner < 3; ++corner) {
         const Index v = moved_.triangles[pulls[i].at.triangle][corner];
         const double weight = pulls[i].weight * pulls[i].at.weights[static_cast<Eigen::Index>(corner)];
         pulls_[v] += weight;
-        goals_[v] += weight * (positions_[v] + way);
+        goals_[v] += weight * (positions_[v] + displacement);
       }
     }
   }

@@ -41,39 +41,40 @@ std::vector<Index> weightedTriangles(const TriMesh& source, const SkinWeights& w
   return triangles;
 }
 
-struct Share {
+struct WeightedJoint {
   Index joint;
   double weight;
 };
 
-void addShares(const TriMesh& source, const SkinWeights& weights, const SurfacePoint& point,
-               std::vector<Share>& shares) {
+void addInfluences(const TriMesh& source, const SkinWeights& weights, const SurfacePoint& point,
+                   std::vector<WeightedJoint>& influences) {
   for (std::size_t corner = 0; corner < 3; ++corner) {
     const Index v = source.triangles[point.triangle][corner];
     for (Index slot = 0; slot < weights.slots; ++slot) {
       const double weight = weights.weightsOf(v)[slot] * point.weights[static_cast<Eigen::Index>(corner)];
       if (!(weight > 0)) continue;
       const Index joint = weights.jointsOf(v)[slot];
-      const auto same = std::find_if(shares.begin(), shares.end(), [&](const Share& s) { return s.joint == joint; });
-      if (same != shares.end()) {
+      const auto same =
+          std::find_if(influences.begin(), influences.end(), [&](const WeightedJoint& s) { return s.joint == joint; });
+      if (same != influences.end()) {
         same->weight += weight;
       } else {
-        shares.push_back({joint, weight});
+        influences.push_back({joint, weight});
       }
     }
   }
 }
 
-void storeShares(std::vector<Share>& shares, Index vertex, SkinWeights& result) {
-  std::sort(shares.begin(), shares.end(), [](const Share& a, const Share& b) {
+void storeInfluences(std::vector<WeightedJoint>& influences, Index vertex, SkinWeights& result) {
+  std::sort(influences.begin(), influences.end(), [](const WeightedJoint& a, const WeightedJoint& b) {
     return a.weight != b.weight ? a.weight > b.weight : a.joint < b.joint;
   });
-  if (shares.size() > result.slots) shares.resize(result.slots);
+  if (influences.size() > result.slots) influences.resize(result.slots);
   double sum = 0;
-  for (const Share& share : shares) sum += share.weight;
-  for (std::size_t slot = 0; slot < shares.size(); ++slot) {
-    result.joints[std::size_t{vertex} * result.slots + slot] = shares[slot].joint;
-    result.weights[std::size_t{vertex} * result.slots + slot] = static_cast<float>(shares[slot].weight / sum);
+  for (const WeightedJoint& influence : influences) sum += influence.weight;
+  for (std::size_t slot = 0; slot < influences.size(); ++slot) {
+    result.joints[std::size_t{vertex} * result.slots + slot] = influences[slot].joint;
+    result.weights[std::size_t{vertex} * result.slots + slot] = static_cast<float>(influences[slot].weight / sum);
   }
 }
 
@@ -107,17 +108,17 @@ SkinWeights projectWeights(const TriMesh& source, const SkinWeights& weights, st
   result.joints.assign(points.size() * slots, 0);
   result.weights.assign(points.size() * slots, 0.0f);
   parallelFor(points.size(), kProjectionGrain, [&](std::size_t begin, std::size_t end) {
-    std::vector<Share> shares;
+    std::vector<WeightedJoint> influences;
     for (std::size_t v = begin; v < end; ++v) {
-      shares.clear();
-      addShares(source, weights, points[v], shares);
-      if (shares.empty()) {
+      influences.clear();
+      addInfluences(source, weights, points[v], influences);
+      if (influences.empty()) {
         SurfacePoint next = weighted.nearestPoint(points[v].position);
-        addShares(source, weights, next, shares);
+        addInfluences(source, weights, next, influences);
         next.weights = Vec3::Constant(1.0 / 3);  // on an edge between vertices without
-        if (shares.empty()) addShares(source, weights, next, shares);
+        if (influences.empty()) addInfluences(source, weights, next, influences);
       }
-      storeShares(shares, static_cast<Index>(v), result);
+      storeInfluences(influences, static_cast<Index>(v), result);
     }
   });
   return result;

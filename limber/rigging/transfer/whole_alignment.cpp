@@ -12,9 +12,9 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kMostPoints = 2000;
+constexpr std::size_t kMaxPoints = 2000;
 constexpr int kClosestRounds = 10;
-constexpr double kMostGrowth = 1.25;
+constexpr double kMaxGrowth = 1.25;
 // Pairs that lie farther apart say nothing; parts of the target's longest side.
 constexpr double kFar = 0.1;
 
@@ -24,7 +24,7 @@ struct SurfaceSample {
 
 std::vector<SurfaceSample> samplesOf(const TriMesh& mesh) {
   const std::vector<Vec3> normals = areaNormals<Vec3f>(mesh.positions, mesh.triangles);
-  const std::size_t step = (mesh.positions.size() + kMostPoints - 1) / kMostPoints;
+  const std::size_t step = (mesh.positions.size() + kMaxPoints - 1) / kMaxPoints;
   std::vector<SurfaceSample> samples;
   for (Index v = 0; v < mesh.vertexCount(); v += static_cast<Index>(step)) {
     if (normals[v].norm() > 0) samples.push_back({mesh.position(v), normals[v].normalized()});
@@ -127,7 +127,7 @@ Affine wholeSimilarity(const TriMesh& source, const TriMesh& target, const Quat&
     map = similarityOf(pairs, map);
   }
   const double growth = std::cbrt(map.linear().determinant() / first.linear().determinant());
-  return growth <= kMostGrowth && growth * kMostGrowth >= 1 ? map : first;
+  return growth <= kMaxGrowth && growth * kMaxGrowth >= 1 ? map : first;
 }
 
 LimbAlignment alignWhole(std::span<const Affine> globals, const Affine& similarity) {
@@ -135,7 +135,7 @@ LimbAlignment alignWhole(std::span<const Affine> globals, const Affine& similari
   result.whole = similarity;
   const Quat turn = Quat(Mat3(similarity.linear() / std::cbrt(similarity.linear().determinant()))).normalized();
   for (const Affine& global : globals) {
-    result.places.push_back(similarity * Vec3(global.translation()));
+    result.positions.push_back(similarity * Vec3(global.translation()));
     result.rotations.push_back(turn);
     result.maps.push_back(similarity);
   }

@@ -11,7 +11,7 @@ namespace limber {
 namespace {
 
 constexpr double kOuter = 2;               // inner radii
-constexpr double kLeastRadius = 0.005;     // longest sides: of bones that lie on the surface
+constexpr double kMinRadius = 0.005;       // longest sides: of bones that lie on the surface
 constexpr std::size_t kVertexRange = 256;  // vertices of one parallel piece of work
 
 // By vertex: the bone nearest to it.
@@ -19,10 +19,10 @@ std::vector<std::size_t> nearestBones(const TriMesh& mesh, std::span<const Bone>
   std::vector<std::size_t> nearest(mesh.vertexCount(), 0);
   parallelFor(nearest.size(), kVertexRange, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
-      const Vec3 place = mesh.position(static_cast<Index>(v));
-      double least = distanceToBone(bones[0], place);
+      const Vec3 position = mesh.position(static_cast<Index>(v));
+      double least = distanceToBone(bones[0], position);
       for (std::size_t b = 1; b < bones.size(); ++b) {
-        const double distance = distanceToBone(bones[b], place);
+        const double distance = distanceToBone(bones[b], position);
         if (distance > least || (distance == least && bones[b].joint >= bones[nearest[v]].joint)) continue;
         least = distance;
         nearest[v] = b;
@@ -47,7 +47,7 @@ std::vector<double> innerRadii(const TriMesh& mesh, std::span<const Bone> bones,
       std::nth_element(of.begin(), middle, of.end());
       median = *middle;
     }
-    radii.push_back(std::max(median, kLeastRadius));
+    radii.push_back(std::max(median, kMinRadius));
   }
   return radii;
 }
@@ -77,14 +77,14 @@ WeightResult envelopeWeights(const TriMesh& mesh, std::span<const Bone> bones, c
   InfluenceTable table(mesh.vertexCount(), options.maxInfluences);
   parallelFor(mesh.vertexCount(), kVertexRange, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
-      std::map<Index, double> held;  // by joint: of its bones the one that holds most
+      std::map<Index, double> weightByJoint;  // by joint: of its bones the one that holds most
       for (std::size_t b = 0; b < bones.size(); ++b) {
         const double distance = distanceToBone(bones[b], mesh.position(static_cast<Index>(v)));
         const double left = std::clamp((kOuter * inner[b] - distance) / ((kOuter - 1) * inner[b]), 0.0, 1.0);
-        double& most = held[bones[b].joint];
+        double& most = weightByJoint[bones[b].joint];
         most = std::max(most, left * left);
       }
-      for (const auto& [joint, weight] : held) table.offer(v, joint, static_cast<float>(weight));
+      for (const auto& [joint, weight] : weightByJoint) table.offer(v, joint, static_cast<float>(weight));
     }
   });
   WeightResult result;

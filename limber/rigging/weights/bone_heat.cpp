@@ -63,7 +63,7 @@ SkinWeights finish(const InfluenceTable& table, const BoneHeatOptions& heat) {
     for (std::size_t v = begin; v < end; ++v) {
       const auto joints = table.jointsOf(v);
       const auto weights = table.weightsOf(v);
-      std::array<double, kMostSlots> kept = {};
+      std::array<double, kMaxSlots> kept = {};
       double sum = 0;
       for (Index k = 0; k < table.slots(); ++k) sum += kept[k] = faded(weights[k], heat);
       if (!(sum > 0)) sum = kept[0] = 1;  // many joints, all faint: the strongest holds it

@@ -13,8 +13,8 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kMostScratches = 4;  // more wait for memory, not for processors
-constexpr std::size_t kOfferRange = 1024;  // vertices of one parallel piece of work
+constexpr std::size_t kMaxScratchBuffers = 4;  // more wait for memory, not for processors
+constexpr std::size_t kOfferRange = 1024;      // vertices of one parallel piece of work
 
 // Pieces of the graph of the matrix, numbered by the lowest vertex they hold.
 std::vector<Index> matrixPieces(const Eigen::SparseMatrix<double>& matrix) {
@@ -45,14 +45,14 @@ void HeatSolver::factorize(const HeatSources& sources) {
   const int vertexCount = static_cast<int>(laplacian_.mass.size());
   const std::vector<Index> piece = matrixPieces(laplacian_.stiffness);
   std::vector<char> fed(vertexCount, 0);  // by piece
-  held_.resize(vertexCount);
+  pull_.resize(vertexCount);
   for (int v = 0; v < vertexCount; ++v) {
-    held_[v] = laplacian_.mass[v] * sources.pull[v] * static_cast<double>(sources.jointsOf(v).size());
-    if (held_[v] > 0) fed[piece[v]] = 1;
+    pull_[v] = laplacian_.mass[v] * sources.pull[v] * static_cast<double>(sources.jointsOf(v).size());
+    if (pull_[v] > 0) fed[piece[v]] = 1;
   }
   // A piece that no heat enters would be singular. Any number there keeps it regular and its weights 0.
   for (int v = 0; v < vertexCount; ++v) {
-    if (!fed[piece[v]]) held_[v] = 1;
+    if (!fed[piece[v]]) pull_[v] = 1;
   }
   holdSources();
   if (cholesky_) {
@@ -65,7 +65,7 @@ void HeatSolver::factorize(const HeatSources& sources) {
 }
 
 void HeatSolver::holdSources() {
-  for (int v = 0; v < held_.size(); ++v) laplacian_.stiffness.coeffRef(v, v) += held_[v];
+  for (int v = 0; v < pull_.size(); ++v) laplacian_.stiffness.coeffRef(v, v) += pull_[v];
 }
 
 void HeatSolver::gatherPulls(const HeatSources& sources) {
@@ -74,7 +74,7 @@ void HeatSolver::gatherPulls(const HeatSources& sources) {
   firstPull_.assign(jointCount + std::size_t{1}, 0);
   for (const Index joint : sources.joints) ++firstPull_[joint + 1];
   for (Index joint = 0; joint < jointCount; ++joint) {
-    if (firstPull_[joint + 1] > 0) heldJoints_.push_back(joint);
+    if (firstPull_[joint + 1] > 0) influencingJoints_.push_back(joint);
   }
   std::partial_sum(firstPull_.begin(), firstPull_.end(), firstPull_.begin());
   pulls_.resize(sources.joints.size());
@@ -97,18 +97,18 @@ InfluenceTable HeatSolver::strongest(Index slots) {
     });
     if (settled) return result;
   }
-  InfluenceTable result(vertexCount, slots), byPlace(vertexCount, slots);
+  InfluenceTable result(vertexCount, slots), bySlot(vertexCount, slots);
   solveDirectly([&](std::span<const Index> joints, const double* x) {
     for (std::size_t row = 0; row < vertexCount; ++row) {
       for (std::size_t k = 0; k < joints.size(); ++k) {
-        byPlace.offer(row, joints[k], static_cast<float>(x[row * kBlock + k]));
+        bySlot.offer(row, joints[k], static_cast<float>(x[row * kBlock + k]));
       }
     }
   });
   parallelFor(vertexCount, kOfferRange, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
-      const Index row = cholesky_->place(static_cast<Index>(v));
-      for (Index k = 0; k < slots; ++k) result.offer(v, byPlace.jointsOf(row)[k], byPlace.weightsOf(row)[k]);
+      const Index row = cholesky_->rowOf(static_cast<Index>(v));
+      for (Index k = 0; k < slots; ++k) result.offer(v, bySlot.jointsOf(row)[k], bySlot.weightsOf(row)[k]);
     }
   });
   return result;
@@ -127,7 +127,7 @@ Eigen::MatrixXd HeatSolver::all(Index jointCount) {
   }
   solveDirectly([&](std::span<const Index> joints, const double* x) {
     for (Index v = 0; v < vertexCount; ++v) {
-      const std::size_t row = cholesky_->place(v);
+      const std::size_t row = cholesky_->rowOf(v);
       for (std::size_t k = 0; k < joints.size(); ++k) result(v, joints[k]) = x[row * kBlock + k];
     }
   });
@@ -136,9 +136,9 @@ Eigen::MatrixXd HeatSolver::all(Index jointCount) {
 
 std::vector<std::span<const Index>> HeatSolver::blocks() const {
   std::vector<std::span<const Index>> result;
-  for (std::size_t first = 0; first < heldJoints_.size(); first += kBlock) {
-    const std::size_t count = std::min<std::size_t>(kBlock, heldJoints_.size() - first);
-    result.push_back(std::span<const Index>(heldJoints_).subspan(first, count));
+  for (std::size_t first = 0; first < influencingJoints_.size(); first += kBlock) {
+    const std::size_t count = std::min<std::size_t>(kBlock, influencingJoints_.size() - first);
+    result.push_back(std::span<const Index>(influencingJoints_).subspan(first, count));
   }
   return result;
 }
@@ -148,7 +148,7 @@ bool HeatSolver::solveByMultigrid(const SettledVisitor& visit) {
   std::mutex visiting;
   std::atomic<bool> settled = true;
   std::atomic<std::size_t> next = 0;
-  parallelFor(std::min<std::size_t>(threadCount(), kMostScratches), 1, [&](std::size_t, std::size_t) {
+  parallelFor(std::min<std::size_t>(threadCount(), kMaxScratchBuffers), 1, [&](std::size_t, std::size_t) {
     Multigrid::Scratch scratch(*multigrid_);
     std::vector<std::span<const Multigrid::Entry>> right;
     for (std::size_t block = next++; block < all.size() && settled; block = next++) {
@@ -179,7 +179,7 @@ void HeatSolver::solveDirectly(const SolvedVisitor& visit) const {
     std::vector<double> x(static_cast<std::size_t>(laplacian_.mass.size()) * kBlock, 0.0);
     for (std::size_t k = 0; k < joints.size(); ++k) {
       for (const Multigrid::Entry& pull : pullsOf(joints[k])) {
-        x[cholesky_->place(pull.unknown) * std::size_t{kBlock} + k] = pull.value;
+        x[cholesky_->rowOf(pull.unknown) * std::size_t{kBlock} + k] = pull.value;
       }
     }
     cholesky_->solve(x.data(), static_cast<int>(joints.size()));

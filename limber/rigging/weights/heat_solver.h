@@ -59,14 +59,14 @@ class HeatSolver {
 
   MakeLaplacian makeLaplacian_;
   Laplacian laplacian_;   // the stiffness is empty beside multigrid
-  Eigen::VectorXd held_;  // by vertex: what is added to the diagonal
+  Eigen::VectorXd pull_;  // by vertex: what is added to the diagonal
   std::unique_ptr<SparseCholesky> cholesky_;
   std::unique_ptr<Multigrid> multigrid_;
   Index directBelow_;
   float tolerance_;
-  std::vector<Index> heldJoints_;        // joints that hold a vertex, ascending
-  std::vector<std::size_t> firstPull_;   // by joint
-  std::vector<Multigrid::Entry> pulls_;  // mass * pull
+  std::vector<Index> influencingJoints_;  // joints that hold a vertex, ascending
+  std::vector<std::size_t> firstPull_;    // by joint
+  std::vector<Multigrid::Entry> pulls_;   // mass * pull
 };
 
 }  // namespace limber

@@ -17,13 +17,13 @@ namespace limber {
 
 namespace {
 
-constexpr double kTouch = 0.1;           // a joint so many diagonals of a piece from it touches it
-constexpr double kLiesOn = 0.02;         // diagonals of a piece from another, at which a point of it counts half
-constexpr double kFirstReach = 0.05;     // diagonals of a piece to the parts that it may hang on at first
-constexpr double kLeastPiece = 0.01;     // longest sides: smaller pieces, and single vertices, look as far as these
-constexpr std::size_t kMostPoints = 64;  // of a piece that look for what it hangs on
-constexpr int kBonePoints = 8;           // at which a bone is looked at
-constexpr double kInside = 2;            // votes of a point within another piece; one that lies on it has one
+constexpr double kTouch = 0.1;          // a joint so many diagonals of a piece from it touches it
+constexpr double kLiesOn = 0.02;        // diagonals of a piece from another, at which a point of it counts half
+constexpr double kFirstReach = 0.05;    // diagonals of a piece to the parts that it may hang on at first
+constexpr double kMinPiece = 0.01;      // longest sides: smaller pieces, and single vertices, look as far as these
+constexpr std::size_t kMaxPoints = 64;  // of a piece that look for what it hangs on
+constexpr int kBonePoints = 8;          // at which a bone is looked at
+constexpr double kInside = 2;           // votes of a point within another piece; one that lies on it has one
 
 // Costs of giving a joint a piece that others touch, too.
 constexpr double kNoPair = 1e6;  // does not touch it
@@ -40,7 +40,7 @@ struct Part {
 
 struct Pivot {
   Index joint = 0;
-  Vec3 place = Vec3::Zero();
+  Vec3 position = Vec3::Zero();
   std::optional<Index> parent;  // among pivots
 };
 
@@ -104,10 +104,10 @@ class PieceJoints {
     const double reach = kTouch * part.box.diagonal();
     std::optional<Bvh> surface;
     for (Index i = 0; i < pivots_.size(); ++i) {
-      const Vec3& place = pivots_[i].place;
-      if (!contains(part.box, place, reach)) continue;
+      const Vec3& position = pivots_[i].position;
+      if (!contains(part.box, position, reach)) continue;
       if (!surface) surface.emplace(mesh_, part.triangles);
-      if (surface->nearestPoint(place).distance < reach || isInside(p, place)) touched_[p].insert(i);
+      if (surface->nearestPoint(position).distance < reach || isInside(p, position)) touched_[p].insert(i);
     }
     // What carries all that a piece touches need not lie in it: where a root lies is arbitrary.
     if (touched_[p].empty()) return;
@@ -210,7 +210,7 @@ class PieceJoints {
         if (p == own[*child.parent] || touched_[p].count(*child.parent) == 0) continue;
         int foreign = 0;
         for (int k = 0; k < kBonePoints; ++k) {
-          const Vec3 at = pivot.place + (k + 0.5) / kBonePoints * (child.place - pivot.place);
+          const Vec3 at = pivot.position + (k + 0.5) / kBonePoints * (child.position - pivot.position);
           foreign += isInside(p, at) && !isInside(own[*child.parent], at);
         }
         if (2 * foreign > kBonePoints) return true;
@@ -277,8 +277,8 @@ class PieceJoints {
     const Part& part = parts_[p];
     LoosePiece loose;
     loose.part = p;
-    loose.diagonal = std::max(part.box.diagonal(), kLeastPiece);
-    const std::size_t all = part.vertices.size() + part.triangles.size(), step = 1 + all / kMostPoints;
+    loose.diagonal = std::max(part.box.diagonal(), kMinPiece);
+    const std::size_t all = part.vertices.size() + part.triangles.size(), step = 1 + all / kMaxPoints;
     for (std::size_t i = 0; i < all; i += step) {
       if (i < part.vertices.size()) {
         loose.points.push_back(mesh_.position(part.vertices[i]));
@@ -312,7 +312,7 @@ class PieceJoints {
       for (const LoosePiece& loose : rest) nearest = std::min(nearest, loose.distance);
       std::erase_if(rest, [&](const LoosePiece& loose) {
         if (loose.distance > std::max(reach, nearest)) return false;
-        pivotOf_[loose.part] = mostVotes(loose);
+        pivotOf_[loose.part] = maxVotes(loose);
         hung.push_back(loose.part);
         return true;
       });
@@ -353,7 +353,7 @@ class PieceJoints {
     }
   }
 
-  static Index mostVotes(const LoosePiece& loose) {
+  static Index maxVotes(const LoosePiece& loose) {
     std::map<Index, double> votes = loose.inside;
     for (std::size_t i = 0; i < loose.points.size(); ++i) {
       const double away = loose.away[i] / (kLiesOn * loose.diagonal), squared = away * away;

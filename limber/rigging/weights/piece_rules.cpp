@@ -10,7 +10,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kPartsShare = 0.6;      // mean top share from which a model is one of parts
+constexpr double kPartsFraction = 0.6;   // mean top share from which a model is one of parts
 constexpr double kPiecesPerJoint = 0.5;  // of which it then has at least so many
 constexpr double kSightOfParts = 0.05;   // vertices of a piece that must see a bone
 constexpr double kSightOfSkin = 0.25;
@@ -19,7 +19,7 @@ constexpr double kRigidTrinket = 0.8;
 constexpr double kTrinketArea = 0.1;  // of the model
 constexpr double kBallCenter = 0.12;  // diagonals from the middle of a piece to the joint it is the ball of
 constexpr double kBallAspect = 2;     // longest side to shortest
-constexpr double kBallShare = 0.2;
+constexpr double kBallFraction = 0.2;
 
 }  // namespace
 
@@ -57,35 +57,35 @@ double PieceRules::sight(Index piece) const {
 }
 
 // Piece by piece, the part of its vertices that each joint holds.
-void PieceRules::visitShares(const SkinWeights& weights, const ShareVisitor& visit) const {
-  std::vector<double> shares(jointCount_, 0);
+void PieceRules::visitWeights(const SkinWeights& weights, const WeightVisitor& visit) const {
+  std::vector<double> fractions(jointCount_, 0);
   for (std::size_t begin = 0, end = 0; begin < order_.size(); begin = end) {
     const Index piece = piece_[order_[begin]];
-    std::fill(shares.begin(), shares.end(), 0.0);
+    std::fill(fractions.begin(), fractions.end(), 0.0);
     for (; end < order_.size() && piece_[order_[end]] == piece; ++end) {
       const Index v = order_[end];
       for (Index slot = 0; slot < weights.slots; ++slot)
-        shares[weights.jointsOf(v)[slot]] += weights.weightsOf(v)[slot];
+        fractions[weights.jointsOf(v)[slot]] += weights.weightsOf(v)[slot];
     }
-    for (double& share : shares) share /= static_cast<double>(end - begin);
-    visit(piece, shares);
+    for (double& fraction : fractions) fraction /= static_cast<double>(end - begin);
+    visit(piece, fractions);
   }
 }
 
-PieceRules::Top PieceRules::topOf(const std::vector<double>& shares) {
-  const auto most = std::max_element(shares.begin(), shares.end());
-  return {static_cast<Index>(most - shares.begin()), *most};
+PieceRules::Top PieceRules::topOf(const std::vector<double>& fractions) {
+  const auto most = std::max_element(fractions.begin(), fractions.end());
+  return {static_cast<Index>(most - fractions.begin()), *most};
 }
 
 void PieceRules::classify(const SkinWeights& weights) {
   double sum = 0, area = 0;
-  visitShares(weights, [&](Index piece, const std::vector<double>& shares) {
+  visitWeights(weights, [&](Index piece, const std::vector<double>& fractions) {
     if (sight(piece) < kSightOfParts) return;
-    sum += area_[piece] * topOf(shares).share;
+    sum += area_[piece] * topOf(fractions).fraction;
     area += area_[piece];
   });
   madeOfParts_ = static_cast<double>(area_.size()) >= std::max(2.0, kPiecesPerJoint * boneJoints_) &&
-                 sum >= kPartsShare * area && area > 0;
+                 sum >= kPartsFraction * area && area > 0;
 }
 
 void PieceRules::dropHardlySeen(InfluenceTable& weights) const {
@@ -104,14 +104,14 @@ bool PieceRules::small(Index piece) const {
 }
 
 // The joint whose bone starts in the middle of a piece that is about as wide as long.
-std::optional<Index> PieceRules::jointAtMiddle(Index piece, const std::vector<double>& shares) const {
+std::optional<Index> PieceRules::jointAtMiddle(Index piece, const std::vector<double>& fractions) const {
   const Box& box = box_[piece];
   if (box.longestSide() > kBallAspect * box.size().minCoeff()) return std::nullopt;
   std::optional<Index> result;
   double nearest = kBallCenter * box.diagonal();
   for (const Bone& bone : bones_) {
     const double distance = (bone.a - box.center()).norm();
-    if (distance >= nearest || shares[bone.joint] < kBallShare) continue;
+    if (distance >= nearest || fractions[bone.joint] < kBallFraction) continue;
     nearest = distance;
     result = bone.joint;
   }
@@ -120,11 +120,11 @@ std::optional<Index> PieceRules::jointAtMiddle(Index piece, const std::vector<do
 
 void PieceRules::bindRigid(SkinWeights& weights, Warnings& warnings) const {
   PieceBinding binding(area_.size());
-  visitShares(weights, [&](Index piece, const std::vector<double>& shares) {
-    const Top top = topOf(shares);
+  visitWeights(weights, [&](Index piece, const std::vector<double>& fractions) {
+    const Top top = topOf(fractions);
     if (madeOfParts_) {
-      binding[piece] = top.share >= kRigidPart ? top.joint : jointAtMiddle(piece, shares);
-    } else if (small(piece) && top.share >= kRigidTrinket) {
+      binding[piece] = top.fraction >= kRigidPart ? top.joint : jointAtMiddle(piece, fractions);
+    } else if (small(piece) && top.fraction >= kRigidTrinket) {
       binding[piece] = top.joint;
     }
   });

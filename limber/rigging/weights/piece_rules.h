@@ -46,16 +46,16 @@ class PieceRules {
  private:
   struct Top {
     Index joint = 0;
-    double share = 0;  // of the piece's vertices
+    double fraction = 0;  // of the piece's vertices
   };
 
-  using ShareVisitor = std::function<void(Index piece, const std::vector<double>& shares)>;
+  using WeightVisitor = std::function<void(Index piece, const std::vector<double>& fractions)>;
 
   double sight(Index piece) const;
-  void visitShares(const SkinWeights& weights, const ShareVisitor& visit) const;
-  static Top topOf(const std::vector<double>& shares);
+  void visitWeights(const SkinWeights& weights, const WeightVisitor& visit) const;
+  static Top topOf(const std::vector<double>& fractions);
   bool small(Index piece) const;
-  std::optional<Index> jointAtMiddle(Index piece, const std::vector<double>& shares) const;
+  std::optional<Index> jointAtMiddle(Index piece, const std::vector<double>& fractions) const;
 
   std::span<const Bone> bones_;
   const std::vector<Index>& piece_;

@@ -75,10 +75,11 @@ class DenseRows {
     std::copy(next_.begin(), next_.end(), values_.begin());
   }
 
-  std::vector<Influence> sharesOf(std::size_t row) const {
-    std::vector<Influence> shares;
-    for (std::size_t c = 0; c < joints_.size(); ++c) shares.push_back({joints_[c], values_[row * joints_.size() + c]});
-    return shares;
+  std::vector<Influence> jointWeightsOf(std::size_t row) const {
+    std::vector<Influence> influences;
+    for (std::size_t c = 0; c < joints_.size(); ++c)
+      influences.push_back({joints_[c], values_[row * joints_.size() + c]});
+    return influences;
   }
 
  private:
@@ -117,13 +118,13 @@ double WeightRow::unlocked() const {
 
 void WeightRow::set(std::span<const Influence> wanted, std::optional<Index> heir) {
   const double room = unlocked();
-  std::vector<Influence> shares;
+  std::vector<Influence> influences;
   for (const Influence& influence : wanted) {
-    if (!locked_[influence.joint]) shares.push_back({influence.joint, std::clamp(influence.weight, 0.0, room)});
+    if (!locked_[influence.joint]) influences.push_back({influence.joint, std::clamp(influence.weight, 0.0, room)});
   }
-  const double asked = sumOf(shares);
-  if (shares.empty() || !(room > 0)) return;
-  for (Influence& share : shares) share.weight *= asked > room ? room / asked : 1;
+  const double asked = sumOf(influences);
+  if (influences.empty() || !(room > 0)) return;
+  for (Influence& part : influences) part.weight *= asked > room ? room / asked : 1;
 
   std::vector<Influence> others;
   for (std::size_t k = 0; k < joints_.size(); ++k) {
@@ -137,22 +138,23 @@ void WeightRow::set(std::span<const Influence> wanted, std::optional<Index> heir
   } else {
     for (Influence& other : others) other.weight *= rest / theirs;
   }
-  shares.insert(shares.end(), others.begin(), others.end());
-  replace(std::move(shares));
+  influences.insert(influences.end(), others.begin(), others.end());
+  replace(std::move(influences));
 }
 
-void WeightRow::replace(std::vector<Influence> shares) {
+void WeightRow::replace(std::vector<Influence> influences) {
   const double room = unlocked();
-  std::erase_if(shares, [&](const Influence& share) { return !(share.weight > 0) || locked_[share.joint]; });
+  std::erase_if(influences,
+                [&](const Influence& influence) { return !(influence.weight > 0) || locked_[influence.joint]; });
   std::vector<Influence> row;
   for (std::size_t k = 0; k < joints_.size(); ++k) {
     if (weights_[k] > 0 && locked_[joints_[k]]) row.push_back({joints_[k], weights_[k]});
   }
-  std::sort(shares.begin(), shares.end(), stronger);
-  shares.resize(std::min(shares.size(), joints_.size() - row.size()));
-  const double sum = sumOf(shares);
+  std::sort(influences.begin(), influences.end(), stronger);
+  influences.resize(std::min(influences.size(), joints_.size() - row.size()));
+  const double sum = sumOf(influences);
   if (!(sum > 0) || !(room > 0)) return;
-  for (const Influence& share : shares) row.push_back({share.joint, share.weight * room / sum});
+  for (const Influence& influence : influences) row.push_back({influence.joint, influence.weight * room / sum});
   std::sort(row.begin(), row.end(), stronger);
   std::fill(joints_.begin(), joints_.end(), Index{0});
   std::fill(weights_.begin(), weights_.end(), 0.0f);
@@ -168,7 +170,7 @@ void smoothWeights(SkinWeights& weights, std::span<const SmoothAmount> amounts, 
   DenseRows rows(weights, amounts);
   for (int pass = 0; pass < kSmoothPasses; ++pass) rows.smooth();
   for (std::size_t i = 0; i < amounts.size(); ++i) {
-    WeightRow(weights, amounts[i].vertex, locked).replace(rows.sharesOf(i));
+    WeightRow(weights, amounts[i].vertex, locked).replace(rows.jointWeightsOf(i));
   }
 }
 

@@ -29,7 +29,7 @@ class WeightRow {
   void set(std::span<const Influence> wanted, std::optional<Index> heir = std::nullopt);
 
   // In proportion to these; joints at most once.
-  void replace(std::vector<Influence> shares);
+  void replace(std::vector<Influence> influences);
 
  private:
   double unlocked() const;

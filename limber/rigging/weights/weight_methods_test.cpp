@@ -42,7 +42,7 @@ std::vector<WeightMethod> quickMethods() {
                           Progress& progress) {
         GeodesicVoxelOptions voxels;
         voxels.nodes = 20'000;
-        voxels.mostCells = 40;
+        voxels.maxCells = 40;
         return geodesicVoxelWeightsWith(voxels, mesh, bones, options, progress);
       };
     }
@@ -149,7 +149,7 @@ TEST(WeightMethods, RefuseWhatCannotBeBound) {
     WeightOptions options;
     EXPECT_THROW(method.compute(ball, {}, options, progress), Error);
     EXPECT_THROW(method.compute({}, bonesHereAndThere(), options, progress), Error);
-    options.maxInfluences = kMostSlots + 1;
+    options.maxInfluences = kMaxSlots + 1;
     EXPECT_THROW(method.compute(ball, bonesHereAndThere(), options, progress), Error);
   }
 }

@@ -21,7 +21,7 @@ void interpolate(const InfluenceTable& table, const Triangle& triangle, const Ve
     Index joint;
     double weight;
   };
-  std::array<Influence, 3 * kMostSlots> all;
+  std::array<Influence, 3 * kMaxSlots> all;
   std::size_t count = 0;
   for (int corner = 0; corner < 3; ++corner) {
     for (Index k = 0; k < table.slots(); ++k) {
@@ -47,16 +47,16 @@ void checkWeightArguments(const TriMesh& mesh, std::span<const Bone> bones, cons
   if (mesh.triangles.empty()) {
     throw KnownError(ErrorKind::kNoSurface, {ErrorCode::kBadArgument, "the mesh has no triangle"});
   }
-  if (options.maxInfluences < 1 || options.maxInfluences > kMostSlots) {
+  if (options.maxInfluences < 1 || options.maxInfluences > kMaxSlots) {
     throw Error(ErrorCode::kBadArgument, "a vertex can keep 1 to 8 influences", {}, "choose `max-influences` 1 to 8");
   }
 }
 
 double distanceToBone(const Bone& bone, const Vec3& point) {
-  const Vec3 way = bone.b - bone.a;
-  const double squared = way.squaredNorm();
-  const double share = squared > 0 ? std::clamp((point - bone.a).dot(way) / squared, 0.0, 1.0) : 0;
-  return std::max(0.0, (point - bone.a - share * way).norm() - bone.radius);
+  const Vec3 displacement = bone.b - bone.a;
+  const double squared = displacement.squaredNorm();
+  const double fraction = squared > 0 ? std::clamp((point - bone.a).dot(displacement) / squared, 0.0, 1.0) : 0;
+  return std::max(0.0, (point - bone.a - fraction * displacement).norm() - bone.radius);
 }
 
 std::vector<Index> bridgeBare(const TriMesh& mesh, InfluenceTable& table) {
@@ -87,14 +87,14 @@ std::vector<Index> bridgeBare(const TriMesh& mesh, InfluenceTable& table) {
 void bindWholePieces(const TriMesh& mesh, WeightResult& result) {
   Index count = 0;
   const std::vector<Index> piece = vertexComponents(mesh, &count);
-  std::vector<std::map<Index, double>> held(count);  // by joint
+  std::vector<std::map<Index, double>> weightByJoint(count);  // by joint
   for (Index v = 0; v < mesh.vertexCount(); ++v) {
     for (Index k = 0; k < result.weights.slots; ++k) {
-      held[piece[v]][result.weights.jointsOf(v)[k]] += result.weights.weightsOf(v)[k];
+      weightByJoint[piece[v]][result.weights.jointsOf(v)[k]] += result.weights.weightsOf(v)[k];
     }
   }
   std::vector<Index> most;
-  for (const std::map<Index, double>& joints : held) {
+  for (const std::map<Index, double>& joints : weightByJoint) {
     most.push_back(std::max_element(joints.begin(), joints.end(), [](const auto& a, const auto& b) {
                      return a.second < b.second;
                    })->first);

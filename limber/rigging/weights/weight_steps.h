@@ -11,7 +11,7 @@
 
 namespace limber {
 
-inline constexpr Index kMostSlots = 8;  // of WeightOptions::maxInfluences
+inline constexpr Index kMaxSlots = 8;  // of WeightOptions::maxInfluences
 
 // Throws Error kBadArgument for no bones, for a mesh without triangles (ErrorKind::kNoSurface) and for maxInfluences
 // outside 1 to kMostSlots.

@@ -154,12 +154,12 @@ Pose slitherAt(const Skeleton& serpent, double seconds) {
   for (const double z : middles(serpent)) headings.push_back(heading(z + gone));
   turnTo(serpent, headings, pose);
   constexpr int kSteps = 400;
-  Vec3 place = Vec3::Zero();
+  Vec3 position = Vec3::Zero();
   for (int i = 0; i < kSteps; ++i) {
     const double angle = heading(pose.locals[0].translation.z() + (i + 0.5) / kSteps * gone);
-    place += gone / kSteps * Vec3(std::sin(angle), 0, std::cos(angle));
+    position += gone / kSteps * Vec3(std::sin(angle), 0, std::cos(angle));
   }
-  pose.locals[0].translation += place;
+  pose.locals[0].translation += position;
   return pose;
 }
 

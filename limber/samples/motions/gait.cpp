@@ -6,7 +6,7 @@
 
 #include "limber/core/text/numbers.h"
 #include "limber/samples/motions/motion_recipes.h"
-#include "limber/samples/motions/smooth_way.h"
+#include "limber/samples/motions/smooth_path.h"
 
 namespace limber {
 
@@ -128,21 +128,21 @@ class Foot {
   Foot(const BipedGait& gait, bool mirrored)
       : gait_(gait), turn_(mirrored ? -gait.turn : gait.turn), behind_(mirrored ? 0.5 : 0.0) {}
 
-  FootPlace at(double bodyStrides) const {
+  FootPose at(double bodyStrides) const {
     const double strides = bodyStrides + behind_, count = std::floor(strides), phase = strides - count;
     return phase < gait_.dutyFactor ? standing(phase, count) : swinging(phase, count);
   }
 
  private:
   // On the ground since it touched for the `count`th time.
-  FootPlace standing(double phase, double count) const {
+  FootPose standing(double phase, double count) const {
     const double along = count + gait_.ahead - behind_, heading = turn_ * along;
-    FootPlace foot;
+    FootPose foot;
     foot.ankle = Eigen::AngleAxisd(heading, Vec3::UnitY()) * Vec3(gait_.side, kAnkleHeight, 0);
     foot.ankle.z() += gait_.stride * along;
     foot.outward = gait_.outward + heading;
     foot.pitch = stancePitch(phase);
-    FootPlace level = foot;
+    FootPose level = foot;
     level.pitch = 0;
     const Vec3& pivot = foot.pitch > 0 ? kToHeel : kToToes;
     foot.ankle += turnedFoot(level, pivot) - turnedFoot(foot, pivot);
@@ -154,24 +154,25 @@ class Foot {
     if (phase < gait_.flat) return gait_.touchPitch * (1 - smoothRise(phase / gait_.flat));
     if (phase < gait_.heelUp) return 0;
     // Backwards in time, from how the foot leaves the ground to where it rests.
-    const double way = gait_.dutyFactor - gait_.heelUp;
-    return smoothWay(gait_.offPitch, -gait_.offSpeed * way, 0.0, 0.0, (gait_.dutyFactor - phase) / way);
+    const double duration = gait_.dutyFactor - gait_.heelUp;
+    return smoothPath(gait_.offPitch, -gait_.offSpeed * duration, 0.0, 0.0, (gait_.dutyFactor - phase) / duration);
   }
 
-  FootPlace swinging(double phase, double count) const {
-    const FootPlace off = standing(gait_.dutyFactor, count), touch = standing(0, count + 1);
-    const double way = 1 - gait_.dutyFactor, share = (phase - gait_.dutyFactor) / way, speed = gait_.offSpeed * way;
+  FootPose swinging(double phase, double count) const {
+    const FootPose off = standing(gait_.dutyFactor, count), touch = standing(0, count + 1);
+    const double duration = 1 - gait_.dutyFactor, fraction = (phase - gait_.dutyFactor) / duration,
+                 speed = gait_.offSpeed * duration;
     // The toes are the pivot until they leave the ground, so that the ankle is on a circle about them.
     const Vec3 axis = Eigen::AngleAxisd(off.outward, Vec3::UnitY()) * -Vec3::UnitX(), arm = -turnedFoot(off, kToToes);
     const Vec3 ankleSpeed = speed * axis.cross(arm), ankleAcceleration = speed * axis.cross(ankleSpeed);
     // The bump's middle, 0.5, is when the foot is highest.
-    const double bump = smoothBump(std::pow(share, std::log(0.5) / std::log(gait_.liftAt)));
-    FootPlace foot;
-    foot.ankle = smoothWay(off.ankle, ankleSpeed, ankleAcceleration, touch.ankle, share);
+    const double bump = smoothBump(std::pow(fraction, std::log(0.5) / std::log(gait_.liftAt)));
+    FootPose foot;
+    foot.ankle = smoothPath(off.ankle, ankleSpeed, ankleAcceleration, touch.ankle, fraction);
     foot.ankle.y() += gait_.lift * bump;
-    foot.outward = off.outward + (touch.outward - off.outward) * smoothRise(share);
-    foot.pitch = smoothWay(gait_.offPitch, speed, 0.0, gait_.touchPitch, share) + gait_.swingPitch * bump;
-    foot.toes = smoothWay(-gait_.offPitch, -speed, 0.0, touch.toes, std::min(1.0, 1.2 * share));
+    foot.outward = off.outward + (touch.outward - off.outward) * smoothRise(fraction);
+    foot.pitch = smoothPath(gait_.offPitch, speed, 0.0, gait_.touchPitch, fraction) + gait_.swingPitch * bump;
+    foot.toes = smoothPath(-gait_.offPitch, -speed, 0.0, touch.toes, std::min(1.0, 1.2 * fraction));
     return foot;
   }
 
@@ -179,7 +180,7 @@ class Foot {
   double turn_, behind_;
 };
 
-ArmPlace armAt(const BipedGait& gait, double strides) {
+ArmPose armAt(const BipedGait& gait, double strides) {
   const double forward = -cosineWave(strides);  // against the leg of its side
   return {gait.arm.raise, gait.arm.swing + gait.armSwing.swing * forward,
           gait.arm.elbow + gait.armSwing.elbow * forward};
@@ -193,10 +194,10 @@ double pelvisHeight(const BipedGait& gait, double strides) {
 }
 
 // Yaw goes with the legs; roll is late by `late`: the side whose foot swings is lower.
-BodyTurn swung(const BodyTurn& held, const BodyTurn& swing, double strides, double heading) {
+BodyTurn swung(const BodyTurn& bodyTurn, const BodyTurn& swing, double strides, double heading) {
   constexpr double kLate = 0.22;
-  return {held.pitch, held.yaw + heading + swing.yaw * cosineWave(strides),
-          held.roll + swing.roll * cosineWave(strides - kLate)};
+  return {bodyTurn.pitch, bodyTurn.yaw + heading + swing.yaw * cosineWave(strides),
+          bodyTurn.roll + swing.roll * cosineWave(strides - kLate)};
 }
 
 }  // namespace

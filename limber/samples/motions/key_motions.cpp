@@ -12,7 +12,7 @@ namespace {
 // Two jumps of a fifth of a second: apart with the arms up, and together.
 std::span<const KeyPose> jumpingJackKeys() {
   constexpr double kTogether = 0.09, kBetween = 0.2, kApart = 0.32;
-  const auto at = [](double height, const FootPlace& foot, double raise, double bend) {
+  const auto at = [](double height, const FootPose& foot, double raise, double bend) {
     return leaning(both({0, height, -0.02}, foot, {.raise = raise, .swing = 0.05, .elbow = 0.25}), 0, bend, 0);
   };
   static const std::vector<KeyPose> keys = {
@@ -95,15 +95,15 @@ std::span<const KeyPose> waveKeys() {
 // On a seat as high as the knees. Trunk forward before and after, so that the body's middle stays over the feet.
 std::span<const KeyPose> sitDownKeys() {
   constexpr double kSide = 0.11, kSeat = 0.50;
-  const ArmPlace reaching{.raise = 0.2, .swing = 0.75, .elbow = 0.35},
+  const ArmPose reaching{.raise = 0.2, .swing = 0.75, .elbow = 0.35},
       onKnees{.raise = 0.16, .swing = 0.38, .elbow = 0.5};
-  const Stance stands = both({0, 0.86, 0}, planted(kSide)),
+  const Stance stance = both({0, 0.86, 0}, planted(kSide)),
                lowers = leaning(both({0, 0.66, -0.25}, planted(kSide), reaching), 0.6, 0.95, 0.35),
                touches = leaning(both({0, kSeat, -0.39}, planted(kSide), onKnees), 0.2, 0.5, 0.2),
                sits = leaning(both({0, kSeat, -0.39}, planted(kSide), onKnees), -0.12, 0.02, 0.02),
                leans = leaning(both({0, kSeat, -0.38}, planted(kSide), reaching), 0.5, 0.9, 0.3);
-  static const std::vector<KeyPose> keys = {{0, stands}, {0.3, stands}, {1.0, lowers},  {1.4, touches}, {1.9, sits},
-                                            {3.4, sits}, {3.9, leans},  {4.35, lowers}, {5.1, stands}};
+  static const std::vector<KeyPose> keys = {{0, stance}, {0.3, stance}, {1.0, lowers},  {1.4, touches}, {1.9, sits},
+                                            {3.4, sits}, {3.9, leans},  {4.35, lowers}, {5.1, stance}};
   return keys;
 }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "limber/samples/motions/motion_recipes.h"
-#include "limber/samples/motions/smooth_way.h"
+#include "limber/samples/motions/smooth_path.h"
 
 namespace limber {
 
@@ -20,16 +20,16 @@ void forEachNumber(Stance& stance, Each each) {
   for (BodyTurn* turn : {&stance.hips, &stance.chest, &stance.head}) {
     each(turn->pitch), each(turn->yaw), each(turn->roll);
   }
-  for (FootPlace& foot : stance.feet) {
+  for (FootPose& foot : stance.feet) {
     for (double& x : foot.ankle) each(x);
     each(foot.outward), each(foot.pitch), each(foot.toes);
   }
-  for (ArmPlace& arm : stance.arms) each(arm.raise), each(arm.swing), each(arm.elbow), each(arm.twist);
+  for (ArmPose& arm : stance.arms) each(arm.raise), each(arm.swing), each(arm.elbow), each(arm.twist);
 }
 
 // Feet by where their toes are, which stand still while heels are lifted.
 Channels channelsOf(Stance stance) {
-  for (FootPlace& foot : stance.feet) foot.ankle += turnedFoot(foot, kToToes);
+  for (FootPose& foot : stance.feet) foot.ankle += turnedFoot(foot, kToToes);
   Channels channels;
   std::size_t next = 0;
   forEachNumber(stance, [&](double x) { channels[next++] = x; });
@@ -40,7 +40,7 @@ Stance stanceOf(const Channels& channels) {
   Stance stance;
   std::size_t next = 0;
   forEachNumber(stance, [&](double& x) { x = channels[next++]; });
-  for (FootPlace& foot : stance.feet) foot.ankle -= turnedFoot(foot, kToToes);
+  for (FootPose& foot : stance.feet) foot.ankle -= turnedFoot(foot, kToToes);
   return stance;
 }
 
@@ -85,8 +85,8 @@ class Cycle {
 // The pelvis leaves the ground and comes back to it as fast as a thrown body does.
 double pelvisHeight(const Cycle& cycle, double time, int number) {
   const auto inAir = [&](int n) { return cycle.pose(n - 1).airborne && cycle.pose(n).airborne; };
-  const auto step = [&](int n, int way) {
-    do n += way;
+  const auto step = [&](int n, int direction) {
+    do n += direction;
     while (inAir(n));
     return n;
   };

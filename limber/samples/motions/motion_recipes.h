@@ -28,7 +28,7 @@ struct BipedGait {
   double sway = 0, surge = 0;  // metres to the standing foot, and forward and back
   // As they are held, and how far they swing to and fro with the legs.
   BodyTurn hips = {}, hipsSwing = {}, chest = {}, chestSwing = {}, head = {}, headSwing = {};
-  ArmPlace arm = {}, armSwing = {};
+  ArmPose arm = {}, armSwing = {};
 };
 
 extern const BipedGait kWalkGait, kRunGait, kSneakGait, kTurnGait;

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kHipWide = 0.10;  // of a foot from the middle, below its hip
 
-FootPlace movedForward(FootPlace foot, double forward) {
+FootPose movedForward(FootPose foot, double forward) {
   foot.ankle.z() += forward;
   return foot;
 }
@@ -34,18 +34,18 @@ Stance runStance() {
   Stance stance = gaitAt(kRunGait, 0.36 * kRunGait.seconds);
   const double forward = stance.pelvis.z();
   stance.pelvis.z() = 0;
-  for (FootPlace& foot : stance.feet) foot.ankle.z() -= forward;
+  for (FootPose& foot : stance.feet) foot.ankle.z() -= forward;
   return stance;
 }
 
 // On a seat as high as the knees.
 Stance sitStance() {
-  constexpr ArmPlace kOnKnees{.raise = 0.14, .swing = 0.42, .elbow = 0.65};
+  constexpr ArmPose kOnKnees{.raise = 0.14, .swing = 0.42, .elbow = 0.65};
   return leaning(both({0, 0.50, -0.39}, planted(kHipWide), kOnKnees), -0.10, 0.02, 0.02);
 }
 
 Stance crouchStance() {
-  constexpr ArmPlace kBeforeKnees{.raise = 0.25, .swing = 0.75, .elbow = 0.9};
+  constexpr ArmPose kBeforeKnees{.raise = 0.25, .swing = 0.75, .elbow = 0.9};
   return leaning(both({0, 0.40, -0.17}, planted(0.14, -0.25), kBeforeKnees), 0.55, 0.75, 0.1);
 }
 
@@ -93,13 +93,13 @@ Stance waveStance() {
 
 // Both hands up.
 Stance cheerStance() {
-  constexpr ArmPlace kUp{.raise = 2.55, .swing = 0.1, .elbow = 0.3};
+  constexpr ArmPose kUp{.raise = 2.55, .swing = 0.1, .elbow = 0.3};
   return leaning(both({0, 0.88, 0}, planted(0.16), kUp), 0, -0.10, -0.25);
 }
 
 // At the top of a jump.
 Stance jumpStance() {
-  constexpr ArmPlace kThrown{.raise = 0.35, .swing = 2.6, .elbow = 0.3};
+  constexpr ArmPose kThrown{.raise = 0.35, .swing = 2.6, .elbow = 0.3};
   Stance stance = both({0, 1.06, 0}, lifted(0.11, 0.21, -0.7), kThrown);
   stance.feet[1] = movedForward(lifted(0.11, 0.46, -0.9), -0.25);
   return leaning(stance, 0.05, 0.02, -0.15);
@@ -107,7 +107,7 @@ Stance jumpStance() {
 
 // Hands on the thighs.
 Stance bowStance() {
-  constexpr ArmPlace kForward{.raise = 0.12, .swing = 0.55, .elbow = 0.15};
+  constexpr ArmPose kForward{.raise = 0.12, .swing = 0.55, .elbow = 0.15};
   return leaning(both({0, 0.85, -0.12}, planted(0.08), kForward), 0.75, 1.05, 0.95);
 }
 

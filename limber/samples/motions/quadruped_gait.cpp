@@ -7,7 +7,7 @@
 
 #include "limber/core/text/numbers.h"
 #include "limber/samples/motions/motion_recipes.h"
-#include "limber/samples/motions/smooth_way.h"
+#include "limber/samples/motions/smooth_path.h"
 #include "limber/skeleton/ik/solvers/two_bone.h"
 
 namespace limber {
@@ -113,7 +113,7 @@ double leanAt(const QuadrupedGait& gait, double phase, bool front) {
 }
 
 // Of the toes, against where they are in rest pose on a body that has not moved.
-Vec3 toesWay(const QuadrupedGait& gait, double strides) {
+Vec3 toesDisplacement(const QuadrupedGait& gait, double strides) {
   const double count = std::floor(strides), swing = swingOf(gait, strides - count);
   return {0, gait.lift * smoothBump(swing), (count + 0.5 * gait.dutyFactor + smoothRise(swing)) * gait.stride};
 }
@@ -174,11 +174,11 @@ class FourLegs {
     const bool front = leg.ends_with("Front");
     const double strides = strides_ - behind, phase = strides - std::floor(strides);
     const double lean = leanAt(gait_, phase, front);
-    const Vec3 stands =
-        rest_[joint(leg + "Toes")].translation() + toesWay(gait_, strides) + Vec3(0, 0, behind * gait_.stride);
+    const Vec3 restDirection =
+        rest_[joint(leg + "Toes")].translation() + toesDisplacement(gait_, strides) + Vec3(0, 0, behind * gait_.stride);
     // Flat while they stand, hanging a little in the air.
     const double toes = -lean * (1 - 0.7 * smoothBump(swingOf(gait_, phase)));
-    placeQuadrupedLeg(skeleton_, leg, {stands, lean, toes}, rest_, globals_, pose_);
+    placeQuadrupedLeg(skeleton_, leg, {restDirection, lean, toes}, rest_, globals_, pose_);
   }
 
   const QuadrupedGait& gait_;

@@ -9,7 +9,7 @@ namespace limber {
 namespace {
 
 // Of both feet of a pair, from where the toes rest.
-struct PawPlace {
+struct PawPose {
   double outward = 0, forward = 0;
   double lean = 0;  // QuadrupedFoot
 };
@@ -19,7 +19,7 @@ struct QuadrupedStance {
   double lowered = 0, forward = 0;  // of the hips
   double hips = 0, back = 0, chest = 0, neck = 0, head = 0;
   double tail = 0, tailTip = 0;
-  PawPlace front, hind;
+  PawPose front, hind;
 };
 
 void pitchJoint(const Skeleton& quadruped, const char* name, double angle, Pose& pose) {
@@ -30,7 +30,7 @@ void placePaws(const Skeleton& quadruped, const QuadrupedStance& stance, Pose& p
   const std::vector<Affine> rest = restGlobals(quadruped), globals = poseGlobals(quadruped, pose);
   for (const char* leg : {"leftHind", "rightHind", "leftFront", "rightFront"}) {
     const std::string name = leg;
-    const PawPlace& paw = name.ends_with("Front") ? stance.front : stance.hind;
+    const PawPose& paw = name.ends_with("Front") ? stance.front : stance.hind;
     const double side = name.starts_with("left") ? 1 : -1;
     const Vec3 toes = rest[quadruped.find(name + "Toes").value()].translation();
     placeQuadrupedLeg(quadruped, name, {toes + Vec3(side * paw.outward, 0, paw.forward), paw.lean, -paw.lean}, rest,

@@ -80,9 +80,9 @@ TEST_P(SampleMotions, FeetStandStillAndStayAboveTheGround) {
         EXPECT_GT((now[figure.find(side + "Foot").value()] * kToHeel).y(), -1e-9) << side << f;
         EXPECT_GT(at(now, side + "Toes_end").y(), 0.02 - 1e-3) << f;
       }
-      const bool stands = std::max(at(now, side + "Toes").y(), at(then, side + "Toes").y()) < ground + 1e-9;
-      standing += stands;
-      still += stands && (at(then, side + "Toes") - at(now, side + "Toes")).norm() < 1e-9;
+      const bool isStanding = std::max(at(now, side + "Toes").y(), at(then, side + "Toes").y()) < ground + 1e-9;
+      standing += isStanding;
+      still += isStanding && (at(then, side + "Toes") - at(now, side + "Toes")).norm() < 1e-9;
     }
   }
   EXPECT_EQ(standing, still);
@@ -94,8 +94,8 @@ TEST_P(SampleMotions, IsSmooth) {
   const double most = flies() ? 150 : 60;  // m/s^2
   for (Index j = 0; j < figure.jointCount(); ++j) {
     for (int f = 0; f < frames(); ++f) {
-      const auto place = [&](int step) -> Vec3 { return globalsAt((f + step) * kFrame)[j].translation(); };
-      const Vec3 bend = place(2) - 2 * place(1) + place(0);
+      const auto positionOf = [&](int step) -> Vec3 { return globalsAt((f + step) * kFrame)[j].translation(); };
+      const Vec3 bend = positionOf(2) - 2 * positionOf(1) + positionOf(0);
       EXPECT_LT(bend.norm() / (kFrame * kFrame), most) << figure.joints[j].name << ' ' << f;
     }
   }
@@ -107,8 +107,8 @@ TEST_P(SampleMotions, RepeatsAndSurvivesAFile) {
   Pose first = restPose(made.skeleton), last = first;
   sampleClip(made.clips[0], 0, first);
   sampleClip(made.clips[0], made.clips[0].duration(), last);
-  const Vec3 way = last.locals[0].translation - first.locals[0].translation;
-  EXPECT_LT(std::hypot(way.x(), way.y()), 1e-5);
+  const Vec3 displacement = last.locals[0].translation - first.locals[0].translation;
+  EXPECT_LT(std::hypot(displacement.x(), displacement.y()), 1e-5);
   for (Index j = 0; j < made.skeleton.jointCount(); ++j) {
     EXPECT_LT(first.locals[j].rotation.angularDistance(last.locals[j].rotation), 1e-4);
   }
@@ -183,10 +183,10 @@ TEST(Slither, SlipsAlongItsBodyAlone) {
                               then = poseGlobals(serpent, slitherAt(serpent, seconds + kFrame));
     for (const char* name : {"spine2", "tail", "tail2"}) {
       const Index joint = serpent.find(name).value();  // the next follows it
-      const Vec3 way = then[joint].translation() - now[joint].translation();
+      const Vec3 displacement = then[joint].translation() - now[joint].translation();
       const Vec3 along = (now[joint - 1].translation() - now[joint + 1].translation()).normalized();
-      EXPECT_GT(way.norm(), 0.003) << name;
-      EXPECT_GT(way.dot(along), 0.97 * way.norm()) << name << ' ' << seconds;
+      EXPECT_GT(displacement.norm(), 0.003) << name;
+      EXPECT_GT(displacement.dot(along), 0.97 * displacement.norm()) << name << ' ' << seconds;
     }
   }
 }
@@ -267,7 +267,7 @@ TEST(Walk, IsSymmetric) {
 
 // The share of the cycle that each leg's toes are on the ground, and when they touch, as a share of the cycle.
 struct Footfall {
-  double share, touches;
+  double fraction, touches;
 };
 std::vector<Footfall> footfalls(const SampleMotion& motion, const std::vector<std::string>& legs) {
   constexpr int kMoments = 400;
@@ -276,14 +276,14 @@ std::vector<Footfall> footfalls(const SampleMotion& motion, const std::vector<st
   std::vector<Footfall> falls(legs.size());
   for (std::size_t leg = 0; leg < legs.size(); ++leg) {
     const Index toes = skeleton.find(legs[leg] + "Toes").value();
-    const auto stands = [&](int moment) {
+    const auto isStanding = [&](int moment) {
       const std::vector<Affine> now = poseGlobals(skeleton, motion.at(skeleton, motion.seconds * moment / kMoments));
       return now[toes].translation().y() < rest[toes].translation().y() + 1e-7;
     };
     for (int m = 0; m < kMoments; ++m) {
-      if (!stands(m)) continue;
-      falls[leg].share += 1.0 / kMoments;
-      if (!stands(m - 1)) falls[leg].touches = static_cast<double>(m) / kMoments;
+      if (!isStanding(m)) continue;
+      falls[leg].fraction += 1.0 / kMoments;
+      if (!isStanding(m - 1)) falls[leg].touches = static_cast<double>(m) / kMoments;
     }
   }
   return falls;
@@ -298,21 +298,21 @@ TEST(Gaits, FeetFallInTheOrderOfTheirKind) {
              gallop = footfalls(sampleNamed("gallop"), legs);
   for (std::size_t leg = 0; leg < 4; ++leg) {
     EXPECT_NEAR(walk[leg].touches, 0.25 * static_cast<double>(leg), 0.01);
-    EXPECT_GT(walk[leg].share, 0.5) << "always on two legs and more";
-    EXPECT_LT(trot[leg].share, 0.5);
-    EXPECT_LT(gallop[leg].share, 0.3);
+    EXPECT_GT(walk[leg].fraction, 0.5) << "always on two legs and more";
+    EXPECT_LT(trot[leg].fraction, 0.5);
+    EXPECT_LT(gallop[leg].fraction, 0.3);
   }
   EXPECT_NEAR(trot[0].touches, trot[3].touches, 1e-9) << "diagonal pairs";
   EXPECT_NEAR(trot[1].touches, trot[2].touches, 1e-9);
   EXPECT_LT(gallop[0].touches, gallop[2].touches) << "hind legs, then front legs";
   EXPECT_LT(gallop[2].touches, gallop[1].touches);
   EXPECT_LT(gallop[1].touches, gallop[3].touches);
-  EXPECT_LT(gallop[3].touches + gallop[3].share, 0.9) << "then no leg";
+  EXPECT_LT(gallop[3].touches + gallop[3].fraction, 0.9) << "then no leg";
 }
 
 TEST(Gaits, ARunHasNoMomentOnBothFeet) {
   const auto run = footfalls(sampleNamed("run"), {"left", "right"});
-  for (const Footfall& foot : run) EXPECT_NEAR(foot.share, 0.33, 0.05);
+  for (const Footfall& foot : run) EXPECT_NEAR(foot.fraction, 0.33, 0.05);
   EXPECT_NEAR(run[1].touches - run[0].touches, 0.5, 0.01);
 }
 
@@ -335,9 +335,9 @@ TEST(KeyedMotions, FlightsAreParabolas) {
   Stance stance;
   stance.pelvis.y() = 1;
   const std::vector<KeyPose> keys = {{0, stance}, {1, stance, true}, {1.1, Stance(), true}, {1.4, stance}};
-  for (double share : {0.0, 0.25, 0.5, 1.0}) {
-    const double t = 0.4 * share;
-    EXPECT_NEAR(keyedStance(keys, 3, 1 + t).pelvis.y(), 1 + 0.5 * 9.81 * t * (0.4 - t), 1e-9) << share;
+  for (double fraction : {0.0, 0.25, 0.5, 1.0}) {
+    const double t = 0.4 * fraction;
+    EXPECT_NEAR(keyedStance(keys, 3, 1 + t).pelvis.y(), 1 + 0.5 * 9.81 * t * (0.4 - t), 1e-9) << fraction;
   }
 }
 

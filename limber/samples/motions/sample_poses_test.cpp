@@ -11,7 +11,7 @@ namespace {
 
 double lowestJoint(const PortablePose& pose) {
   double lowest = 1;
-  for (const Vec3& place : posePositions(pose.skeleton, pose.pose)) lowest = std::min(lowest, place.y());
+  for (const Vec3& position : posePositions(pose.skeleton, pose.pose)) lowest = std::min(lowest, position.y());
   return lowest;
 }
 

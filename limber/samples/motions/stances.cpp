@@ -2,8 +2,8 @@
 
 namespace limber {
 
-FootPlace planted(double side, double pitch) {
-  FootPlace foot{{side, kAnkleHeight, 0}, 0.12, 0, 0};
+FootPose planted(double side, double pitch) {
+  FootPose foot{{side, kAnkleHeight, 0}, 0.12, 0, 0};
   const Vec3 toes = turnedFoot(foot, kToToes);
   foot.pitch = pitch;
   foot.ankle += toes - turnedFoot(foot, kToToes);
@@ -11,14 +11,14 @@ FootPlace planted(double side, double pitch) {
   return foot;
 }
 
-FootPlace lifted(double side, double height, double pitch) {
-  FootPlace foot = planted(side, pitch);
+FootPose lifted(double side, double height, double pitch) {
+  FootPose foot = planted(side, pitch);
   foot.ankle.y() += height;
   foot.toes *= 0.4;
   return foot;
 }
 
-Stance both(const Vec3& pelvis, const FootPlace& foot, const ArmPlace& arm) {
+Stance both(const Vec3& pelvis, const FootPose& foot, const ArmPose& arm) {
   Stance stance;
   stance.pelvis = pelvis;
   stance.feet = {foot, foot};

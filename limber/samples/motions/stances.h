@@ -7,15 +7,15 @@ namespace limber {
 
 // On the ground: toes where they are when the ankle of the flat foot is `side` from the middle, the heel lifted so far
 // that the foot's pitch is `pitch`. Metres and radians, here and below.
-FootPlace planted(double side, double pitch = 0);
+FootPose planted(double side, double pitch = 0);
 
 // In the air, with hanging toes.
-FootPlace lifted(double side, double height, double pitch);
+FootPose lifted(double side, double height, double pitch);
 
-inline constexpr ArmPlace kHanging{.raise = 0.14, .elbow = 0.25};
+inline constexpr ArmPose kHanging{.raise = 0.14, .elbow = 0.25};
 
 // Both sides the same; arms hang unless they are told otherwise.
-Stance both(const Vec3& pelvis, const FootPlace& foot, const ArmPlace& arm = kHanging);
+Stance both(const Vec3& pelvis, const FootPose& foot, const ArmPose& arm = kHanging);
 
 // Pitches of the trunk.
 Stance leaning(Stance stance, double hips, double chest, double head);

@@ -56,18 +56,20 @@ Drag::Drag(DragScene scene, Index joint, DragMode mode, const Ray& ray, const Ve
                        [&](std::size_t other) { return isBelow(skeleton, moved_[m].joint, moved_[other].joint); });
   });
   if (scene_.ik) {
-    const auto heldOf = [&](Index j) {
-      return std::find_if(scene_.held.begin(), scene_.held.end(), [&](const HeldTarget& t) { return t.joint == j; });
+    const auto pinnedTargetOf = [&](Index j) {
+      return std::find_if(scene_.pinned.begin(), scene_.pinned.end(),
+                          [&](const PinnedTarget& t) { return t.joint == j; });
     };
     for (const std::size_t m : pulled_) {
-      HeldTarget target{moved_[m].joint, globals_[moved_[m].joint].translation()};
-      if (const auto held = heldOf(target.joint); held != scene_.held.end()) target.rotation = held->rotation;
+      PinnedTarget target{moved_[m].joint, globals_[moved_[m].joint].translation()};
+      if (const auto value = pinnedTargetOf(target.joint); value != scene_.pinned.end())
+        target.rotation = value->rotation;
       targets_.push_back(target);
     }
-    for (const HeldTarget& held : scene_.held) {
+    for (const PinnedTarget& value : scene_.pinned) {
       const bool moves = std::any_of(moved_.begin(), moved_.end(),
-                                     [&](const DragFollower& follower) { return follower.joint == held.joint; });
-      if (!moves) targets_.push_back(held);
+                                     [&](const DragFollower& follower) { return follower.joint == value.joint; });
+      if (!moves) targets_.push_back(value);
     }
   }
   pull_.emplace(skeleton, targets_, scene_.limits, scene_.solver);
@@ -104,7 +106,7 @@ Pose Drag::moved(const Vec3& offset) {
 Pose Drag::carried(const Vec3& offset, const Vec3& turn) {
   Pose pose = scene_.start;
   const Quat rotation = fromRotationVector(turn * kPi / 180);
-  std::vector<HeldTarget> targets = targets_;  // other moves of this drag do not turn what they pull
+  std::vector<PinnedTarget> targets = targets_;  // other moves of this drag do not turn what they pull
   for (std::size_t p = 0; p < pulled_.size(); ++p) {
     const DragFollower& m = moved_[pulled_[p]];
     const Affine& start = globals_[m.joint];
@@ -149,8 +151,8 @@ std::optional<Vec3> Drag::grip(const Ray& ray, const Vec3& view) const {
 }
 
 Vec3 Drag::snappedOffset(const Vec3& offset) const {
-  const Vec3 place = globals_[joint()].translation();
-  return snapPlace(scene_.snap, place + offset) - place;
+  const Vec3 position = globals_[joint()].translation();
+  return snapPosition(scene_.snap, position + offset) - position;
 }
 
 void Drag::slide(Index joint, const Vec3& offset, Pose& pose) const {
@@ -176,7 +178,7 @@ Quat Drag::turnTo(Index joint, const Vec3& turn) const {
   const std::optional<Index> parent = scene_.skeleton->joints[joint].parent;
   const Quat above = parent ? decompose(globals_[*parent]).rotation : Quat::Identity();
   Transform wanted = scene_.start.locals[joint];
-  placeFromRest(wanted, scene_.skeleton->joints[joint].rest, {turn, Vec3::Zero()});
+  setFromRest(wanted, scene_.skeleton->joints[joint].rest, {turn, Vec3::Zero()});
   return above * wanted.rotation * scene_.start.locals[joint].rotation.conjugate() * above.conjugate();
 }
 

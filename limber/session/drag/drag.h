@@ -23,8 +23,8 @@ struct DragScene {
   const JointLimits* limits = nullptr;
   Pose start;
   bool ik = false;
-  std::vector<HeldTarget> held;  // joints that hold on to a place, with inverse kinematics on
-  double rollRadius = 1;         // metres: a root that the pointer moves this far rolls by one radian
+  std::vector<PinnedTarget> pinned;  // joints that hold on to a place, with inverse kinematics on
+  double rollRadius = 1;             // metres: a root that the pointer moves this far rolls by one radian
   std::string_view solver = kLimbSolver;
   std::vector<DragFollower> followers = {};
   DragSnap snap = {};  // of the dragged joint
@@ -78,7 +78,7 @@ class Drag {
   double depth_ = 0;                 // of the joint before the camera, metres
   Vec3 gripAtStart_ = Vec3::Zero();
   std::vector<std::size_t> pulled_, slid_;  // of moved_: by their limbs, which come first among the targets; the others
-  std::vector<HeldTarget> targets_;
+  std::vector<PinnedTarget> targets_;
   std::optional<LimbPull> pull_;
 };
 

@@ -31,10 +31,11 @@ DragScene sceneOf(const Skeleton& skeleton, bool ik = false) {
 
 TEST(Drag, MoveSlidesInThePlaneThatFacesTheCamera) {
   const Skeleton skeleton = twoArmedBody(BoneShape::kSphere);
-  const Vec3 hand = at(skeleton, restPose(skeleton), kHand), grip = hand + Vec3(0.05, -0.03, 0), way(-0.4, 0.7, 0);
+  const Vec3 hand = at(skeleton, restPose(skeleton), kHand), grip = hand + Vec3(0.05, -0.03, 0),
+             displacement(-0.4, 0.7, 0);
   Drag drag(sceneOf(skeleton), kHand, DragMode::kMove, through(grip), kView);
-  const Pose pose = drag.at(through(grip + way), kView).value();
-  EXPECT_LT((at(skeleton, pose, kHand) - hand - way).norm(), 1e-12);
+  const Pose pose = drag.at(through(grip + displacement), kView).value();
+  EXPECT_LT((at(skeleton, pose, kHand) - hand - displacement).norm(), 1e-12);
   EXPECT_LT((at(skeleton, pose, kElbow) - at(skeleton, restPose(skeleton), kElbow)).norm(), 1e-12);
 }
 
@@ -152,7 +153,7 @@ TEST(Drag, HeldJointsStayWhereTheyAreWhenTheBodyMoves) {
   // Bent a little, since a stretched arm cannot follow away.
   scene.start.locals[kElbow].rotation = Quat(Eigen::AngleAxisd(1.2, Vec3::UnitZ()));
   const Vec3 hand = at(skeleton, scene.start, kHand);
-  scene.held = {{kHand, hand}};
+  scene.pinned = {{kHand, hand}};
   Drag drag(scene, 0, DragMode::kMove, through({0, 1, 0}), kView);
   const Pose pose = drag.at(through({-0.2, 1.1, 0}), kView).value();
   EXPECT_LT((at(skeleton, pose, 0) - Vec3(-0.2, 1.1, 0)).norm(), 1e-12);
@@ -184,8 +185,8 @@ TEST(Drag, SnappedTheJointIsOnTheGrid) {
   DragScene scene = sceneOf(skeleton);
   scene.snap.step = 0.25;
   Drag drag(scene, kHand, DragMode::kMove, through(hand), kView);
-  const Vec3 place = at(skeleton, drag.at(through(hand + Vec3(0.3, -0.4, 0)), kView, true).value(), kHand);
-  EXPECT_LT((place - Vec3(2.75, 1.5, 0)).norm(), 1e-12);
+  const Vec3 position = at(skeleton, drag.at(through(hand + Vec3(0.3, -0.4, 0)), kView, true).value(), kHand);
+  EXPECT_LT((position - Vec3(2.75, 1.5, 0)).norm(), 1e-12);
 }
 
 TEST(Drag, SnappedTurnsGoInSteps) {

@@ -20,7 +20,7 @@ std::optional<Index> limbBase(const Skeleton& skeleton, Index joint) {
   return base;
 }
 
-LimbPull::LimbPull(const Skeleton& skeleton, std::span<const HeldTarget> targets, const JointLimits* limits,
+LimbPull::LimbPull(const Skeleton& skeleton, std::span<const PinnedTarget> targets, const JointLimits* limits,
                    std::string_view solver)
     : skeleton_(skeleton), limits_(limits) {
   for (std::size_t t = 0; t < targets.size(); ++t) {
@@ -39,7 +39,7 @@ LimbPull::LimbPull(const Skeleton& skeleton, std::span<const HeldTarget> targets
   solver_.emplace(findIkMethod(solver), skeleton, wanted_, limits, options);
 }
 
-void LimbPull::solve(Pose& pose, std::span<const HeldTarget> targets) {
+void LimbPull::solve(Pose& pose, std::span<const PinnedTarget> targets) {
   if (!solver_) return;
   for (std::size_t t = 0; t < used_.size(); ++t) wanted_[t].position = targets[used_[t]].position;
   solver_->solve(pose, wanted_);
@@ -55,8 +55,8 @@ void LimbPull::turnTo(Pose& pose, Index joint, const Quat& rotation) const {
   if (limits_) local = nearestAllowed(limits_->joints[joint], local);
 }
 
-void setTarget(std::vector<HeldTarget>& targets, const HeldTarget& target) {
-  for (HeldTarget& known : targets) {
+void setTarget(std::vector<PinnedTarget>& targets, const PinnedTarget& target) {
+  for (PinnedTarget& known : targets) {
     if (known.joint == target.joint) {
       known = target;
       return;
@@ -65,8 +65,8 @@ void setTarget(std::vector<HeldTarget>& targets, const HeldTarget& target) {
   targets.push_back(target);
 }
 
-void eraseTarget(std::vector<HeldTarget>& targets, Index joint) {
-  targets.erase(std::remove_if(targets.begin(), targets.end(), [&](const HeldTarget& t) { return t.joint == joint; }),
+void eraseTarget(std::vector<PinnedTarget>& targets, Index joint) {
+  targets.erase(std::remove_if(targets.begin(), targets.end(), [&](const PinnedTarget& t) { return t.joint == joint; }),
                 targets.end());
 }
 

@@ -12,15 +12,15 @@ namespace limber {
 
 inline constexpr std::string_view kLimbSolver = "whole-body";
 
-struct HeldTarget {
+struct PinnedTarget {
   Index joint = 0;
   Vec3 position = Vec3::Zero();
   std::optional<Quat> rotation = std::nullopt;  // global, of a joint that must not tilt either: a foot on the ground
 };
 
 // One for each joint: in place of that which the joint had.
-void setTarget(std::vector<HeldTarget>& targets, const HeldTarget& target);
-void eraseTarget(std::vector<HeldTarget>& targets, Index joint);
+void setTarget(std::vector<PinnedTarget>& targets, const PinnedTarget& target);
+void eraseTarget(std::vector<PinnedTarget>& targets, Index joint);
 
 // The highest joint that turns when `joint` is pulled: the limb goes up to the joint below the next branch, and at
 // least one joint up. None where there is nothing to turn: at a root, and right below one, which stays where it is.
@@ -31,7 +31,7 @@ class LimbPull {
  public:
   // Joints without a limb are passed over. `skeleton` and `limits` (none: null) must outlive it. Throws Error
   // kBadArgument for a `solver` that is none of ikMethods(), or that refuses these limbs.
-  LimbPull(const Skeleton& skeleton, std::span<const HeldTarget> targets, const JointLimits* limits,
+  LimbPull(const Skeleton& skeleton, std::span<const PinnedTarget> targets, const JointLimits* limits,
            std::string_view solver = kLimbSolver);
 
   // Whether any joint has a limb to turn.
@@ -39,7 +39,7 @@ class LimbPull {
   // `targets` are those of the constructor, at other places. `pose` is the start and becomes the answer; the same start
   // and targets give the same answer. A joint with a rotation turns there once its limb has reached. Throws Error as
   // IkSystem::load does.
-  void solve(Pose& pose, std::span<const HeldTarget> targets);
+  void solve(Pose& pose, std::span<const PinnedTarget> targets);
 
  private:
   void turnTo(Pose& pose, Index joint, const Quat& rotation) const;

@@ -26,7 +26,7 @@ TEST(LimbBase, GoesUpToTheNextBranch) {
 
 TEST(LimbPull, BringsEveryJointThatHasALimb) {
   const Skeleton skeleton = twoArmedBody(BoneShape::kSphere);
-  std::array<HeldTarget, 3> targets = {{{kHand, {1.2, 2.9, 0.2}}, {0, {5, 5, 5}}, {kOtherHand, {-1.4, 1.2, -0.1}}}};
+  std::array<PinnedTarget, 3> targets = {{{kHand, {1.2, 2.9, 0.2}}, {0, {5, 5, 5}}, {kOtherHand, {-1.4, 1.2, -0.1}}}};
   LimbPull pull(skeleton, targets, nullptr);
   ASSERT_TRUE(pull.any());
   for (const double step : {0.0, 0.1}) {
@@ -42,7 +42,7 @@ TEST(LimbPull, BringsEveryJointThatHasALimb) {
 
 TEST(LimbPull, WithoutALimbNothingMoves) {
   const Skeleton skeleton = twoArmedBody(BoneShape::kSphere);
-  const std::array<HeldTarget, 1> targets = {{{0, {5, 5, 5}}}};
+  const std::array<PinnedTarget, 1> targets = {{{0, {5, 5, 5}}}};
   LimbPull pull(skeleton, targets, nullptr);
   EXPECT_FALSE(pull.any());
   Pose pose = restPose(skeleton);

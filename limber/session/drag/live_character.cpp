@@ -13,7 +13,7 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kMostLiveFrames = 36'000;  // ten minutes at 60 a second
+constexpr std::size_t kMaxLiveFrames = 36'000;  // ten minutes at 60 a second
 
 }  // namespace
 
@@ -32,7 +32,7 @@ void LiveCharacter::begin(const Pose& source) {
     map_ = matchSkeletons(source_, rig_->character.reading(), false, &*pose);
   }
   RetargetOptions options;
-  options.characterStands = true;
+  options.characterOnGround = true;
   options.skin = makeBodySkin(rig_->skeleton(), rig_->geometry().positions, rig_->weights);
   setup_.emplace(plainSource_.skeleton(), plainTarget_.skeleton(), map_, options, &plain);
   retargeter_ = findRetargetMethod("limb-ik").make(*setup_);
@@ -44,9 +44,9 @@ const Pose& LiveCharacter::next(const Pose& source, double seconds) {
   const double since = moments_.empty() ? 0 : std::clamp(seconds - last_, kShortest, kLongest);
   last_ = seconds;
   if (!retargeter_) begin(source);
-  if (poses_.size() == kMostLiveFrames) {
-    moments_.erase(moments_.begin(), moments_.begin() + kMostLiveFrames / 2);
-    poses_.erase(poses_.begin(), poses_.begin() + kMostLiveFrames / 2);
+  if (poses_.size() == kMaxLiveFrames) {
+    moments_.erase(moments_.begin(), moments_.begin() + kMaxLiveFrames / 2);
+    poses_.erase(poses_.begin(), poses_.begin() + kMaxLiveFrames / 2);
   }
   moments_.push_back(moments_.empty() ? 0 : moments_.back() + since);
   poses_.push_back(source);

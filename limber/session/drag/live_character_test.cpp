@@ -28,7 +28,7 @@ TEST(LiveCharacter, FollowsAsAWholeMotionDoes) {
   const Skeleton& skeleton = session.state().rig->skeleton();
   const Motion walk = makeSampleMotion("walk");
   RetargetOptions options;
-  options.characterStands = true;
+  options.characterOnGround = true;
   const SkeletonMap map = matchSkeletons(walk.skeleton, skeleton);
   const Clip whole =
       retargetClip(findRetargetMethod("limb-ik"), walk.skeleton, walk.clips[0], skeleton, map, options, 60);

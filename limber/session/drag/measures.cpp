@@ -18,7 +18,7 @@ namespace limber {
 namespace {
 
 constexpr float kInfluence = 1.0f / 256;
-constexpr double kLeastVolume = 1e-6;  // of the box: less is no inside
+constexpr double kMinVolume = 1e-6;  // of the box: less is no inside
 
 float weightOf(const SkinWeights& weights, Index vertex, Index joint) {
   float sum = 0;
@@ -67,12 +67,12 @@ void measureSurface(const SessionState& state, SessionMeasures& measures) {
   for (const Vec3f& position : bound.positions) box.add(position.cast<double>());
   const double before = enclosedVolume(bound.positions, bound.triangles);
   const double room = box.longestSide() * box.longestSide() * box.longestSide();
-  if (std::abs(before) > kLeastVolume * room) measures.volume = enclosedVolume(posed, bound.triangles) / before - 1;
+  if (std::abs(before) > kMinVolume * room) measures.volume = enclosedVolume(posed, bound.triangles) / before - 1;
 }
 
 void measureTargets(const SessionState& state, SessionMeasures& measures) {
   const std::vector<Affine> globals = poseGlobals(state.rig->skeleton(), state.pose);
-  for (const HeldTarget& target : state.targets) {
+  for (const PinnedTarget& target : state.targets) {
     const double distance = (globals[target.joint].translation() - target.position).norm();
     measures.targetDistance = std::max(measures.targetDistance.value_or(0), distance);
   }
@@ -95,7 +95,7 @@ std::optional<MotionMetrics> measureClip(const SessionState& state) {
     PoseSequence ours = plainTo.plain(sampleFrames(to, moved, rate));
     ours.poses.resize(theirs.poses.size(), ours.poses.back());
     RetargetOptions standing;
-    standing.characterStands = true;
+    standing.characterOnGround = true;
     const RetargetSetup setup(plainFrom.skeleton(), plainTo.skeleton(), source.map, standing, &theirs);
     const MotionMetrics metrics = measureMotion(setup, theirs, ours);
     return metrics.hasLegs ? std::optional(metrics) : std::nullopt;

@@ -50,23 +50,23 @@ TEST(PickSurface, FindsThePosedSurfaceAndTheJointThatHoldsIt) {
   for (std::size_t t = 0; t < model->geometry().triangles.size(); t += 11) {
     const Triangle& triangle = model->geometry().triangles[t];
     Vec3 point = aside;
-    std::vector<double> held(model->skeleton().joints.size());
+    std::vector<double> weightByJoint(model->skeleton().joints.size());
     for (const Index v : triangle) {
       point += model->geometry().positions[v].cast<double>() / 3;
       for (Index k = 0; k < model->weights.slots; ++k) {
-        held[model->weights.jointsOf(v)[k]] += double{model->weights.weightsOf(v)[k]} / 3;
+        weightByJoint[model->weights.jointsOf(v)[k]] += double{model->weights.weightsOf(v)[k]} / 3;
       }
     }
-    const Vec3 way(0.1, -5, 0.2);
-    const auto hit = pickSurface({point - way, way}, *model, pose);
+    const Vec3 displacement(0.1, -5, 0.2);
+    const auto hit = pickSurface({point - displacement, displacement}, *model, pose);
     ASSERT_TRUE(hit);
     EXPECT_FALSE(hit->onHandle);
-    EXPECT_GE((hit->inside - hit->position).dot(way), 0);
-    EXPECT_LE(hit->distance, way.norm() + 1e-4);  // that triangle, or one before it
-    EXPECT_LT((hit->position - (point - way + hit->distance * way.normalized())).norm(), 1e-4);
+    EXPECT_GE((hit->inside - hit->position).dot(displacement), 0);
+    EXPECT_LE(hit->distance, displacement.norm() + 1e-4);  // that triangle, or one before it
+    EXPECT_LT((hit->position - (point - displacement + hit->distance * displacement.normalized())).norm(), 1e-4);
     if ((hit->position - point).norm() > 1e-4) continue;
     ++met;
-    for (const double other : held) EXPECT_GE(held[hit->joint], other - 1e-4);
+    for (const double other : weightByJoint) EXPECT_GE(weightByJoint[hit->joint], other - 1e-4);
   }
   EXPECT_GT(met, 5);
   // Through the middle of the trunk from the front.

@@ -29,15 +29,15 @@ DragSnap snapOf(const RiggedModel& rig, Index joint) {
   DragSnap snap;
   snap.step = roundStep(longestSide(rig) / kStepsAlongModel);
   snap.up = rig.anatomy().axes.up;
-  for (const HeldTarget& foot : standingFeet(rig, rig.home)) {
+  for (const PinnedTarget& foot : standingFeet(rig, rig.home)) {
     if (foot.joint == joint) snap.ground = snap.up.dot(foot.position);
   }
   return snap;
 }
 
-Vec3 snapPlace(const DragSnap& snap, const Vec3& place) {
-  Vec3 snapped = snap.step * (place / snap.step).array().round();
-  const double height = snap.up.dot(place);
+Vec3 snapPosition(const DragSnap& snap, const Vec3& position) {
+  Vec3 snapped = snap.step * (position / snap.step).array().round();
+  const double height = snap.up.dot(position);
   if (snap.ground && std::abs(height - *snap.ground) <= snap.step) {
     snapped += (*snap.ground - snap.up.dot(snapped)) * snap.up;
   }

@@ -25,7 +25,7 @@ double roundStep(double length);
 DragSnap snapOf(const RiggedModel& rig, Index joint);
 
 // The nearest place of the grid; within a step of standing on the floor, the place stands there. World space.
-Vec3 snapPlace(const DragSnap& snap, const Vec3& place);
+Vec3 snapPosition(const DragSnap& snap, const Vec3& position);
 // The same axis, by the nearest number of steps.
 Quat snapTurn(const DragSnap& snap, const Quat& turn);
 

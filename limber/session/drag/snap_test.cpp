@@ -24,11 +24,11 @@ TEST(Snap, StepsAreRoundNumbersNearTheLength) {
 TEST(Snap, PlacesGoToTheGridAndFeetToTheFloor) {
   DragSnap snap;
   snap.step = 0.05;
-  EXPECT_LT((snapPlace(snap, {0.26, -0.024, 1.03}) - Vec3(0.25, 0, 1.05)).norm(), 1e-12);
+  EXPECT_LT((snapPosition(snap, {0.26, -0.024, 1.03}) - Vec3(0.25, 0, 1.05)).norm(), 1e-12);
   snap.ground = 0.07;
-  EXPECT_LT((snapPlace(snap, {0.26, 0.11, 1.03}) - Vec3(0.25, 0.07, 1.05)).norm(), 1e-12);
-  EXPECT_LT((snapPlace(snap, {0.26, 0.03, 1.03}) - Vec3(0.25, 0.07, 1.05)).norm(), 1e-12);
-  EXPECT_LT((snapPlace(snap, {0.26, 0.21, 1.03}) - Vec3(0.25, 0.2, 1.05)).norm(), 1e-12);
+  EXPECT_LT((snapPosition(snap, {0.26, 0.11, 1.03}) - Vec3(0.25, 0.07, 1.05)).norm(), 1e-12);
+  EXPECT_LT((snapPosition(snap, {0.26, 0.03, 1.03}) - Vec3(0.25, 0.07, 1.05)).norm(), 1e-12);
+  EXPECT_LT((snapPosition(snap, {0.26, 0.21, 1.03}) - Vec3(0.25, 0.2, 1.05)).norm(), 1e-12);
 }
 
 TEST(Snap, TurnsKeepTheirAxis) {
@@ -46,7 +46,7 @@ TEST(Snap, AFootOfABodyKnowsWhereTheFloorIs) {
   session.run(OpenSample{"biped", true}, progress);
   const SessionState& state = session.state();
   ASSERT_FALSE(state.targets.empty());
-  const HeldTarget& foot = state.targets.front();
+  const PinnedTarget& foot = state.targets.front();
   const DragSnap snap = snapOf(*state.rig, foot.joint);
   EXPECT_DOUBLE_EQ(snap.step, 0.02);
   ASSERT_TRUE(snap.ground);

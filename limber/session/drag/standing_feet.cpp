@@ -6,7 +6,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kStandsWithin = 0.05;  // of the leg's length: a foot this much higher than at rest stands still
+constexpr double kStanceWithin = 0.05;  // of the leg's length: a foot this much higher than at rest stands still
 
 bool isLimb(const Part& part) {
   return part.kind == PartKind::kLeg || part.kind == PartKind::kArm || part.kind == PartKind::kWing;
@@ -38,35 +38,35 @@ bool hasLimbs(const Anatomy& anatomy) {
   return anatomy.confidence >= kDoubtful && std::any_of(anatomy.parts.begin(), anatomy.parts.end(), isLimb);
 }
 
-std::vector<HeldTarget> standingFeet(const RiggedModel& rig, const Pose& pose) {
+std::vector<PinnedTarget> standingFeet(const RiggedModel& rig, const Pose& pose) {
   const Skeleton& skeleton = rig.skeleton();
   const Anatomy& anatomy = rig.anatomy();
   const std::vector<Affine> rest = restGlobals(skeleton), posed = poseGlobals(skeleton, pose);
-  std::vector<HeldTarget> feet;
+  std::vector<PinnedTarget> feet;
   if (!hasLimbs(anatomy)) return feet;
   for (const Part& part : anatomy.parts) {
     if (part.kind != PartKind::kLeg || part.joints.empty()) continue;
     const Index foot = footOf(part);
     if (!limbBase(skeleton, foot)) continue;
     const double risen = anatomy.axes.up.dot(posed[foot].translation() - rest[foot].translation());
-    if (risen > kStandsWithin * lengthAlong(part, rest)) continue;
+    if (risen > kStanceWithin * lengthAlong(part, rest)) continue;
     feet.push_back({foot, posed[foot].translation(), decompose(posed[foot]).rotation});
   }
   return feet;
 }
 
-std::vector<HeldTarget> heldDuringDrag(const RiggedModel& rig, const Pose& pose, const std::vector<HeldTarget>& targets,
-                                       Index dragged) {
-  std::vector<HeldTarget> held;
-  for (const HeldTarget& target : targets) {
+std::vector<PinnedTarget> pinnedDuringDrag(const RiggedModel& rig, const Pose& pose,
+                                           const std::vector<PinnedTarget>& targets, Index dragged) {
+  std::vector<PinnedTarget> pinned;
+  for (const PinnedTarget& target : targets) {
     const Part* leg = legOf(rig.anatomy(), target.joint);
     if (!leg || !isInLimbAbove(rig.skeleton(), dragged, target.joint)) {
-      held.push_back(target);
+      pinned.push_back(target);
     } else if (leg->toes) {
-      held.push_back({*leg->toes, poseGlobals(rig.skeleton(), pose)[*leg->toes].translation(), std::nullopt});
+      pinned.push_back({*leg->toes, poseGlobals(rig.skeleton(), pose)[*leg->toes].translation(), std::nullopt});
     }
   }
-  return held;
+  return pinned;
 }
 
 bool isInLimbAbove(const Skeleton& skeleton, Index above, Index joint) {

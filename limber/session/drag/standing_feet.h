@@ -14,12 +14,12 @@ bool hasLimbs(const Anatomy& anatomy);
 
 // Feet, paws and hooves that are no higher in `pose` than the rest pose has them, held where they are, their soles as
 // they are. World space.
-std::vector<HeldTarget> standingFeet(const RiggedModel& rig, const Pose& pose);
+std::vector<PinnedTarget> standingFeet(const RiggedModel& rig, const Pose& pose);
 
 // What of `targets` holds while `dragged` is moved. A foot whose own limb is dragged above it gives way: it rolls over
 // its toes where it has some, else it lets go.
-std::vector<HeldTarget> heldDuringDrag(const RiggedModel& rig, const Pose& pose, const std::vector<HeldTarget>& targets,
-                                       Index dragged);
+std::vector<PinnedTarget> pinnedDuringDrag(const RiggedModel& rig, const Pose& pose,
+                                           const std::vector<PinnedTarget>& targets, Index dragged);
 
 // Whether `above` belongs to the limb that the target at `joint` is reached by, and is not that joint.
 bool isInLimbAbove(const Skeleton& skeleton, Index above, Index joint);

@@ -63,10 +63,10 @@ TEST(StandingFeet, AreHeldOnceForEachLegThatStands) {
 
 TEST(StandingFeet, StayWhereTheyAreWithTheirSolesWhileTheHipsGoDown) {
   Session session = opened("biped");
-  const std::vector<HeldTarget> feet = session.state().targets;
+  const std::vector<PinnedTarget> feet = session.state().targets;
   const Index root = 0;
   drag(session, take(session, root), {0.02, -0.12, 0});
-  for (const HeldTarget& foot : feet) {
+  for (const PinnedTarget& foot : feet) {
     const Affine now = globalOf(session, foot.joint);
     EXPECT_LT((now.translation() - foot.position).norm(), 2e-3);
     EXPECT_LT(angleBetween(decompose(now).rotation, *foot.rotation), 1e-6);

@@ -40,14 +40,14 @@ std::string sampleText(const char* name) {
   return poseToJson(makeSamplePose(name));
 }
 
-Vec3 standsAt(const Session& session, const std::string& joint) {
+Vec3 isAt(const Session& session, const std::string& joint) {
   const Skeleton& skeleton = session.state().rig->skeleton();
   return posePositions(skeleton, session.state().pose)[skeleton.find(joint).value()];
 }
 
 // The joint of a person's named skeleton, and in the sample pose, as a direction to the next one.
-Vec3 directionOf(const std::vector<Vec3>& places, const Skeleton& skeleton, const char* from, const char* to) {
-  return (places[skeleton.find(to).value()] - places[skeleton.find(from).value()]).normalized();
+Vec3 directionOf(const std::vector<Vec3>& positions, const Skeleton& skeleton, const char* from, const char* to) {
+  return (positions[skeleton.find(to).value()] - positions[skeleton.find(from).value()]).normalized();
 }
 
 std::string refusalOf(Session& session, const Command& command) {
@@ -99,26 +99,26 @@ TEST(ApplyPose, BonesOfAnotherSkeletonPointAsInThePose) {
 TEST(ApplyPose, ASeatedOrCrouchedBodyKeepsItsFeetOnTheGroundAndWhereTheyStood) {
   Session session = personWithNames();
   follow(session, ApplyPose{sampleText("stand")});
-  const Vec3 left = standsAt(session, "leftFoot"), right = standsAt(session, "rightFoot");
+  const Vec3 left = isAt(session, "leftFoot"), right = isAt(session, "rightFoot");
   for (const char* name : {"sit", "crouch", "stand"}) {
     follow(session, ApplyPose{sampleText(name)});
     for (const auto& [foot, before] : {std::pair("leftFoot", left), std::pair("rightFoot", right)}) {
-      EXPECT_NEAR(standsAt(session, foot).y(), before.y(), 0.06) << name;
+      EXPECT_NEAR(isAt(session, foot).y(), before.y(), 0.06) << name;
     }
-    const Vec3 middle = 0.5 * (standsAt(session, "leftFoot") + standsAt(session, "rightFoot") - left - right);
+    const Vec3 middle = 0.5 * (isAt(session, "leftFoot") + isAt(session, "rightFoot") - left - right);
     EXPECT_LT(std::hypot(middle.x(), middle.z()), 1e-6) << name;
   }
   follow(session, ApplyPose{sampleText("jump")});
-  EXPECT_GT(std::min(standsAt(session, "leftToes").y(), standsAt(session, "rightToes").y()), 0.15);
+  EXPECT_GT(std::min(isAt(session, "leftToes").y(), isAt(session, "rightToes").y()), 0.15);
 }
 
 TEST(ApplyPose, WhereTheBodyWasMovedItStays) {
   Session session = personWithNames();
   follow(session, SetIk{false, "whole-body"});
   follow(session, MoveJoint{session.state().rig->skeleton().joints[0].name, {1.5, 0, -0.5}});
-  const Vec3 before = 0.5 * (standsAt(session, "leftFoot") + standsAt(session, "rightFoot"));
+  const Vec3 before = 0.5 * (isAt(session, "leftFoot") + isAt(session, "rightFoot"));
   follow(session, ApplyPose{sampleText("wave")});
-  const Vec3 after = 0.5 * (standsAt(session, "leftFoot") + standsAt(session, "rightFoot"));
+  const Vec3 after = 0.5 * (isAt(session, "leftFoot") + isAt(session, "rightFoot"));
   EXPECT_NEAR(after.x(), before.x(), 1e-6);
   EXPECT_NEAR(after.z(), before.z(), 1e-6);
 }
@@ -146,20 +146,20 @@ TEST(ApplyPose, AnotherKindOfBodyIsRefusedAndNothingChanges) {
 
 TEST(ApplyPose, PinsGoWhereThePoseHasThemAndLiftedFeetAreLetGo) {
   Session session = personWithNames();
-  follow(session, SetTarget{"leftHand", standsAt(session, "leftHand")});
+  follow(session, SetTarget{"leftHand", isAt(session, "leftHand")});
   ASSERT_EQ(session.state().targets.size(), 3u);
   follow(session, ApplyPose{sampleText("sit")});
   ASSERT_EQ(session.state().targets.size(), 3u);
-  const auto expectHeld = [&] {
-    const std::vector<Vec3> places = posePositions(session.state().rig->skeleton(), session.state().pose);
-    for (const HeldTarget& target : session.state().targets) {
-      EXPECT_LT((target.position - places[target.joint]).norm(), 1e-9);
+  const auto expectPinned = [&] {
+    const std::vector<Vec3> positions = posePositions(session.state().rig->skeleton(), session.state().pose);
+    for (const PinnedTarget& target : session.state().targets) {
+      EXPECT_LT((target.position - positions[target.joint]).norm(), 1e-9);
     }
   };
-  expectHeld();
+  expectPinned();
   follow(session, ApplyPose{sampleText("jump")});
   EXPECT_EQ(session.state().targets.size(), 1u);
-  expectHeld();
+  expectPinned();
   // What holds does not pull the pose back.
   const Pose posed = session.state().pose;
   follow(session, TurnJoint{"head", {0, 1, 0}, 0});
@@ -178,8 +178,8 @@ TEST(ApplyPose, OnJointsThatAreNamedAloneAndMirrored) {
     EXPECT_EQ(sameTransform(session.state().pose.locals[j], before.locals[j]), !asked) << skeleton.joints[j].name;
   }
   follow(session, ApplyPose{sampleText("wave"), {}, true});
-  EXPECT_GT(standsAt(session, "leftHand").y(), standsAt(session, "neck").y());
-  EXPECT_LT(standsAt(session, "rightHand").y(), standsAt(session, "leftHand").y() - 0.3);
+  EXPECT_GT(isAt(session, "leftHand").y(), isAt(session, "neck").y());
+  EXPECT_LT(isAt(session, "rightHand").y(), isAt(session, "leftHand").y() - 0.3);
 }
 
 TEST(ApplyPose, IsAPoseOfTheChosenClipsMoment) {

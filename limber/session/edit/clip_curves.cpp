@@ -68,8 +68,8 @@ std::vector<double> curveMoments(const Movement& movement, Index joint, double f
 std::vector<Vec3> jointPaths(const Movement& movement, const Skeleton& skeleton, std::span<const double> moments) {
   std::vector<Vec3> paths;
   eachPose(movement, skeleton, moments, [&](const Pose& pose) {
-    const std::vector<Vec3> places = posePositions(skeleton, pose);
-    paths.insert(paths.end(), places.begin(), places.end());
+    const std::vector<Vec3> positions = posePositions(skeleton, pose);
+    paths.insert(paths.end(), positions.begin(), positions.end());
   });
   return paths;
 }
@@ -119,7 +119,7 @@ CurvePoint pointFromRest(const Transform& local, const Transform& rest) {
   return {rotationVector(turn), local.translation - rest.translation};
 }
 
-void placeFromRest(Transform& local, const Transform& rest, const CurvePoint& point) {
+void setFromRest(Transform& local, const Transform& rest, const CurvePoint& point) {
   const double degrees = point.turn.norm();
   const Vec3 axis = degrees > 0 ? Vec3(point.turn / degrees) : Vec3(Vec3::UnitX());
   local.rotation = (rest.rotation * Quat(Eigen::AngleAxisd(degrees / kDegrees, axis))).normalized();

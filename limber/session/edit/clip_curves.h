@@ -41,6 +41,6 @@ std::vector<CurveTangent> curveTangents(const Movement& movement, const Skeleton
 // By the short way, at most half a turn.
 CurvePoint pointFromRest(const Transform& local, const Transform& rest);
 // The inverse: the joint stands so. Its scale stays.
-void placeFromRest(Transform& local, const Transform& rest, const CurvePoint& point);
+void setFromRest(Transform& local, const Transform& rest, const CurvePoint& point);
 
 }  // namespace limber

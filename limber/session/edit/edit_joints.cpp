@@ -70,10 +70,10 @@ bool isAtOrBelow(const Skeleton& skeleton, Index joint, Index top) {
 }
 
 Index nearestOther(const Skeleton& skeleton, Index joint) {
-  const std::vector<Vec3> places = restPositions(skeleton);
+  const std::vector<Vec3> positions = restPositions(skeleton);
   std::optional<Index> nearest;
-  const auto distance = [&](Index other) { return (places[other] - places[joint]).squaredNorm(); };
-  for (Index other = 0; other < places.size(); ++other) {
+  const auto distance = [&](Index other) { return (positions[other] - positions[joint]).squaredNorm(); };
+  for (Index other = 0; other < positions.size(); ++other) {
     if (other != joint && (!nearest || distance(other) < distance(*nearest))) nearest = other;
   }
   return *nearest;
@@ -84,12 +84,12 @@ void giveWeights(SkinWeights& weights, Index joint, Index heir, Index jointCount
   for (Index v = 0; v < weights.vertexCount(); ++v) {
     WeightRow row(weights, v, unlocked);
     if (!(row.of(joint) > 0)) continue;
-    std::vector<Influence> shares = {{heir, row.of(joint) + row.of(heir)}};
+    std::vector<Influence> influences = {{heir, row.of(joint) + row.of(heir)}};
     for (Index k = 0; k < weights.slots; ++k) {
       const Index other = weights.jointsOf(v)[k];
-      if (weights.weightsOf(v)[k] > 0 && other != joint && other != heir) shares.push_back({other, row.of(other)});
+      if (weights.weightsOf(v)[k] > 0 && other != joint && other != heir) influences.push_back({other, row.of(other)});
     }
-    row.replace(std::move(shares));
+    row.replace(std::move(influences));
   }
 }
 
@@ -157,17 +157,17 @@ class ClipCarrier {
       poses.push_back(carriedPose(from_, pose, to_, before_));
     }
     for (const Index j : moved_) {
-      Track<Vec3f> places{j, Interpolation::kLinear, times, {}}, scales = places;
+      Track<Vec3f> positions{j, Interpolation::kLinear, times, {}}, scales = positions;
       Track<Eigen::Quaternionf> turns{j, Interpolation::kLinear, times, {}};
       bool scaled = false;
       for (const Pose& pose : poses) {
         const Transform& local = pose.locals[j];
-        places.values.push_back(local.translation.cast<float>());
+        positions.values.push_back(local.translation.cast<float>());
         turns.values.push_back(local.rotation.cast<float>().normalized());
         scales.values.push_back(local.scale.cast<float>());
         scaled = scaled || (local.scale - to_.joints[j].rest.scale).norm() > kSameScale;
       }
-      result.translations.push_back(std::move(places));
+      result.translations.push_back(std::move(positions));
       result.rotations.push_back(std::move(turns));
       if (scaled) result.scales.push_back(std::move(scales));
     }
@@ -275,8 +275,8 @@ void takeJointEdit(SessionState& state, const JointEdit& edit) {
   for (Index j = 0; j < edit.before.size(); ++j) {
     if (edit.before[j]) after[*edit.before[j]] = j;
   }
-  std::erase_if(state.targets, [&](const HeldTarget& target) { return !after[target.joint]; });
-  for (HeldTarget& target : state.targets) target.joint = *after[target.joint];
+  std::erase_if(state.targets, [&](const PinnedTarget& target) { return !after[target.joint]; });
+  for (PinnedTarget& target : state.targets) target.joint = *after[target.joint];
   std::erase_if(state.locked, [&](const std::string& name) { return !to.find(name); });
   const std::string limits = state.limits ? carriedLimits(*state.limits, from, to, edit.before) : std::string();
   state.rig = edit.rig;

@@ -31,7 +31,7 @@ std::vector<Joint> jointsOf(const Session& session) {
   return session.state().rig->skeleton().joints;
 }
 
-Vec3 placeOf(const Session& session, const std::string& joint) {
+Vec3 positionOf(const Session& session, const std::string& joint) {
   const SessionState& state = session.state();
   return posePositions(state.rig->skeleton(), state.pose)[*state.rig->skeleton().find(joint)];
 }
@@ -75,7 +75,7 @@ TEST(EditJoints, EachJointCanBeDeletedInTurn) {
       EXPECT_EQ(jointsOf(session).size() + 1, jointsOf(opened).size());
       EXPECT_FALSE(session.state().rig->skeleton().find(joint.name));
       for (const Joint& left : jointsOf(session)) {
-        EXPECT_LT((placeOf(session, left.name) - placeOf(opened, left.name)).norm(), 1e-5) << left.name;
+        EXPECT_LT((positionOf(session, left.name) - positionOf(opened, left.name)).norm(), 1e-5) << left.name;
       }
       EXPECT_LT(apart(surfaceOf(session), rest), 1e-5) << joint.name;
       for (Index v = 0; v < rest.size(); ++v) {
@@ -103,17 +103,17 @@ TEST(EditJoints, ANewJointStandsWhereItIsToldAndMovesNothing) {
   Session session = editing();
   edit(session, TurnJoint{"leftUpperArm", Vec3::UnitZ(), 40});
   const std::vector<Vec3f> before = surfaceOf(session);
-  const Vec3 place = placeOf(session, "leftHand") + Vec3(0.1, 0.05, 0);
-  edit(session, AddJoint{"leftHand", place, "thumb"});
-  EXPECT_LT((placeOf(session, "thumb") - place).norm(), 1e-6);
+  const Vec3 position = positionOf(session, "leftHand") + Vec3(0.1, 0.05, 0);
+  edit(session, AddJoint{"leftHand", position, "thumb"});
+  EXPECT_LT((positionOf(session, "thumb") - position).norm(), 1e-6);
   EXPECT_LT(apart(surfaceOf(session), before), 1e-5);
   expectWrittenAsShown(session);
   edit(session, TurnJoint{"thumb", Vec3::UnitZ(), 60});
   EXPECT_LT(apart(surfaceOf(session), before), 1e-5);
-  edit(session, AddJoint{"thumb", place + Vec3(0.1, 0, 0), ""});
+  edit(session, AddJoint{"thumb", position + Vec3(0.1, 0, 0), ""});
   EXPECT_TRUE(session.state().rig->skeleton().find("joint_1"));
-  EXPECT_THROW(edit(session, AddJoint{"thumb", place, "hips"}), Error);
-  EXPECT_THROW(edit(session, AddJoint{"tail", place, "tip"}), Error);
+  EXPECT_THROW(edit(session, AddJoint{"thumb", position, "hips"}), Error);
+  EXPECT_THROW(edit(session, AddJoint{"tail", position, "tip"}), Error);
 
   PaintWeights paint;
   paint.joint = "thumb";
@@ -131,20 +131,20 @@ TEST(EditJoints, AJointHungElsewhereStaysInPlaceAndFollowsItsNewParent) {
   edit(session, TurnJoint{"chest", Vec3::UnitX(), 25});
   edit(session, TurnJoint{"leftUpperArm", Vec3::UnitZ(), 40});
   edit(session, LockWeights{"leftHand", true});
-  edit(session, SetTarget{"rightHand", placeOf(session, "rightHand")});
+  edit(session, SetTarget{"rightHand", positionOf(session, "rightHand")});
   const std::vector<Vec3f> before = surfaceOf(session);
-  const Vec3 hand = placeOf(session, "leftHand");
+  const Vec3 hand = positionOf(session, "leftHand");
   EXPECT_THROW(edit(session, ReparentJoint{"leftUpperArm", "leftHand"}), Error);
   EXPECT_THROW(edit(session, ReparentJoint{"leftUpperArm", "leftUpperArm"}), Error);
   edit(session, ReparentJoint{"leftUpperArm", "hips"});
-  EXPECT_LT((placeOf(session, "leftHand") - hand).norm(), 1e-6);
+  EXPECT_LT((positionOf(session, "leftHand") - hand).norm(), 1e-6);
   EXPECT_LT(apart(surfaceOf(session), before), 1e-5);
   EXPECT_EQ(session.state().targets.size(), 1u);
   EXPECT_EQ(jointsOf(session)[session.state().targets[0].joint].name, "rightHand");
   EXPECT_TRUE(session.state().locked.count("leftHand"));
   expectWrittenAsShown(session);
   edit(session, TurnJoint{"chest", Vec3::UnitX(), 25});
-  EXPECT_LT((placeOf(session, "leftHand") - hand).norm(), 1e-6) << "the chest does not move it any more";
+  EXPECT_LT((positionOf(session, "leftHand") - hand).norm(), 1e-6) << "the chest does not move it any more";
 }
 
 TEST(EditJoints, ClipsMoveWhatIsLeftAsBefore) {
@@ -167,7 +167,7 @@ TEST(EditJoints, ClipsMoveWhatIsLeftAsBefore) {
       edit(is, SetTime{keys[k]});
       for (const Joint& joint : jointsOf(is)) {
         if (!was.state().rig->skeleton().find(joint.name)) continue;
-        EXPECT_LT((placeOf(is, joint.name) - placeOf(was, joint.name)).norm(), 1e-4) << joint.name;
+        EXPECT_LT((positionOf(is, joint.name) - positionOf(was, joint.name)).norm(), 1e-4) << joint.name;
       }
     }
     expectWrittenAsShown(is);
@@ -180,7 +180,7 @@ TEST(EditJoints, ARecordGivesTheSameBytesAndAKeptSessionTheSameRig) {
   Session session = editing("biped.glb");
   const std::vector<Joint> joints = jointsOf(session);
   const std::string last = joints.back().name;
-  edit(session, AddJoint{last, placeOf(session, last) + Vec3(0, 0.1, 0), "tip"});
+  edit(session, AddJoint{last, positionOf(session, last) + Vec3(0, 0.1, 0), "tip"});
   edit(session, DeleteJoint{joints[joints.size() - 2].name});
   edit(session, ReparentJoint{"tip", joints[0].name});
   Session again(editedFile);

@@ -9,7 +9,7 @@ namespace limber {
 namespace {
 
 constexpr double kMirrorTolerance = 0.01;  // of the longest side, for joints that are images
-constexpr double kLeastWithImages = 0.8;   // of the joints, for a skeleton that is its own mirror image
+constexpr double kMinWithImages = 0.8;     // of the joints, for a skeleton that is its own mirror image
 
 MirrorPlane planeOfSkeleton(const RiggedModel& rig) {
   const std::vector<Affine> rest = restGlobals(rig.skeleton());
@@ -32,7 +32,7 @@ Affine reflection(const MirrorPlane& plane) {
 }
 
 // Half way between two motions of the same point.
-Affine halfWay(const Affine& a, const Affine& b, const Vec3& pivot) {
+Affine halfwayTransform(const Affine& a, const Affine& b, const Vec3& pivot) {
   const Transform ta = decompose(a), tb = decompose(b);
   Transform half;
   half.rotation = ta.rotation.slerp(0.5, tb.rotation);
@@ -76,7 +76,7 @@ RigMirror mirrorOfRig(const RiggedModel& rig) {
   }
   RigMirror mirror = mirrorOfRig(rig, planeOfSkeleton(rig));
   const auto without = std::count(mirror.joints.begin(), mirror.joints.end(), kNoIndex);
-  if (static_cast<double>(without) > (1 - kLeastWithImages) * static_cast<double>(mirror.joints.size())) {
+  if (static_cast<double>(without) > (1 - kMinWithImages) * static_cast<double>(mirror.joints.size())) {
     throw KnownError(
         ErrorKind::kNothingMirrored,
         {ErrorCode::kUnsupported, "neither the model nor its skeleton is its own mirror image", rig.asset().name});
@@ -98,7 +98,8 @@ Pose mirrorPose(const Skeleton& skeleton, const Pose& pose, const MirrorPlane& p
         images[j] == kNoIndex || (images[j] != j && from != MirrorFrom::kBoth && isLeft == (from == MirrorFrom::kLeft));
     Affine motion = motions[j];
     if (!stays) motion = mirror * motions[images[j]] * mirror;
-    if (images[j] == j && from != MirrorFrom::kBoth) motion = halfWay(motions[j], motion, rest[j].translation());
+    if (images[j] == j && from != MirrorFrom::kBoth)
+      motion = halfwayTransform(motions[j], motion, rest[j].translation());
     globals[j] = motion * rest[j];
     const std::optional<Index> parent = skeleton.joints[j].parent;
     result.locals[j] = decompose(parent ? Affine(globals[*parent].inverse(Eigen::Affine) * globals[j]) : globals[j]);

@@ -111,12 +111,12 @@ std::vector<KeyOfJoint> keysAt(const PoseKey& key) {
   return keys;
 }
 
-double spanNear(const ClipLayer& layer, const JointKey& place) {
+double spanNear(const ClipLayer& layer, const JointKey& jointKey) {
   double span = 0, nearest = std::numeric_limits<double>::infinity();
   for (const LayerTrack& track : layer.tracks) {
     for (const LayerKey& key : track.keys) {
-      const double away = std::abs(key.seconds - place.seconds);
-      if (track.joint != place.joint || away >= nearest) continue;
+      const double away = std::abs(key.seconds - jointKey.seconds);
+      if (track.joint != jointKey.joint || away >= nearest) continue;
       nearest = away;
       span = key.span;
     }
@@ -161,7 +161,7 @@ Clip retargeted(ClipSource& source, const RiggedModel& rig) {
   options.reach = source.command.reach;
   options.contacts = source.command.contacts;
   options.contactEdits = source.contactEdits;
-  options.characterStands = true;
+  options.characterOnGround = true;
   options.skin = makeBodySkin(skeleton, rig.geometry().positions, rig.weights);
   const RetargetMethod& method = findRetargetMethod(source.command.method);
   const Clip& moving = motion.clips[source.clip];
@@ -316,15 +316,15 @@ void joinClips(Movement& movement, const RiggedModel& rig, const JoinClips& comm
         fmt::format("a sequence takes two clips or more{}", removed > 0 ? ", and of its own some were removed" : ""));
   }
   const Skeleton& skeleton = rig.skeleton();
-  const Quat stands = turnToStand(rig.character.reading());
+  const Quat toUpright = turnToStand(rig.character.reading());
   std::vector<ClipWithContacts> clips;
   for (const std::string& name : names) {
     if (name == command.into) refuse(fmt::format("the clip '{}' cannot be a part of itself", name));
     const Clip& clip = *movement.clips[requireClip(movement, name)].clip;
-    clips.push_back({turnClip(clip, skeleton, stands.conjugate()), {}});
+    clips.push_back({turnClip(clip, skeleton, toUpright.conjugate()), {}});
   }
   JoinedMotions joined = joinMotions(skeleton, clips, {command.seconds, std::nullopt}, &movement.warnings);
-  Clip made = turnClip(std::move(joined.motion.clip), skeleton, stands);
+  Clip made = turnClip(std::move(joined.motion.clip), skeleton, toUpright);
   if (!into) {
     made.name = freeName(fmt::format("{}", fmt::join(names, "_")),
                          [&](const std::string& name) { return findClip(movement, name).has_value(); });
@@ -507,7 +507,7 @@ void setJointKeyOf(Movement& movement, const Skeleton& skeleton, const SetJointK
   if (!command.turn.allFinite() || !command.offset.allFinite()) refuse("a key's value is no number");
   const Pose shown = clipPose(*chosen.clip, skeleton, key.seconds);
   Pose pose = shown;
-  placeFromRest(pose.locals[key.joint], skeleton.joints[key.joint].rest, {command.turn, command.offset});
+  setFromRest(pose.locals[key.joint], skeleton.joints[key.joint].rest, {command.turn, command.offset});
   if (!chosen.base) {
     return editOwnKeys(chosen, skeleton, [&](Clip& clip) {
       setJointKey(clip, skeleton, key.joint, pose.locals[key.joint], key.seconds);
@@ -526,7 +526,7 @@ KeySlope slopeOf(const Transform& local, const Transform& rest, const SetTangent
   const CurvePoint at = pointFromRest(local, rest);
   const auto turnedAfter = [&](double seconds) {
     Transform after = local;
-    placeFromRest(after, rest, {at.turn + seconds * command.turn, at.offset});
+    setFromRest(after, rest, {at.turn + seconds * command.turn, at.offset});
     return Eigen::Vector4d(after.rotation.coeffs() * (after.rotation.dot(local.rotation) < 0 ? -1 : 1));
   };
   return {command.tangents, command.offset, (turnedAfter(kStep) - turnedAfter(-kStep)) / (2 * kStep)};
@@ -553,19 +553,19 @@ void pasteKeysOf(Movement& movement, const RiggedModel& rig, const PasteKeys& co
   if (command.keys.empty()) refuse("no keys are given");
   for (const PoseKey& key : command.keys) {
     if (key.joints.empty()) refuse("no joints are given");
-    const std::vector<JointKey> places = keysNamed(skeleton, keysAt(key));
+    const std::vector<JointKey> keys = keysNamed(skeleton, keysAt(key));
     const Pose shown = clipPose(*chosen.clip, skeleton, key.seconds);
     const Pose pose = appliedPose(rig, shown, {key.pose, key.joints});
     if (!chosen.base) {
       editOwnKeys(chosen, skeleton, [&](Clip& clip) {
-        for (const JointKey& place : places) {
-          setJointKey(clip, skeleton, place.joint, pose.locals[place.joint], key.seconds);
+        for (const JointKey& jointKey : keys) {
+          setJointKey(clip, skeleton, jointKey.joint, pose.locals[jointKey.joint], key.seconds);
         }
       });
       continue;
     }
     const Pose base = clipPose(*chosen.base, skeleton, key.seconds);
-    const double span = spanNear(chosen.layer, places.front());
+    const double span = spanNear(chosen.layer, keys.front());
     editLayer(chosen, skeleton, [&](ClipLayer& layer) { setKey(layer, base, shown, pose, key.seconds, span); });
   }
 }

@@ -119,8 +119,8 @@ double slideOf(const Session& session, const char* joint, double from, double to
     sampleClip(*session.state().movement.clip(), seconds, pose);
     return posePositions(skeleton, pose)[skeleton.find(joint).value()];
   };
-  const Vec3 way = at(to) - at(from);
-  return std::hypot(way.x(), way.z());
+  const Vec3 displacement = at(to) - at(from);
+  return std::hypot(displacement.x(), displacement.z());
 }
 
 TEST(Movement, AUserSaysWhetherAFootStands) {
@@ -136,19 +136,20 @@ TEST(Movement, AUserSaysWhetherAFootStands) {
   ASSERT_FALSE(found[0]["planted"].empty());
   const double from = found[0]["planted"][0][0], to = found[0]["planted"][0][1];
   ASSERT_GT(to - from, 0.2);
-  const double middle = (from + to) / 2, held = slideOf(session, "leftFoot", middle, to);
+  const double middle = (from + to) / 2, pinnedSlide = slideOf(session, "leftFoot", middle, to);
 
   act(session, SetContact{"leftFoot", from, to, ContactChange::kFree});
   EXPECT_TRUE(feet()[0]["edited"].get<bool>());
   for (const Json& span : feet()[0]["planted"]) EXPECT_TRUE(span[1] < from || span[0] > to);
-  EXPECT_GT(slideOf(session, "leftFoot", middle, to), held + 1e-4) << "legs of other proportions slide by themselves";
+  EXPECT_GT(slideOf(session, "leftFoot", middle, to), pinnedSlide + 1e-4)
+      << "legs of other proportions slide by themselves";
   // By another method the same is kept.
   act(session, RetargetMotion{.motion = "walk", .clip = {}, .method = "spacetime", .map = {}});
   EXPECT_TRUE(feet()[0]["edited"].get<bool>());
   act(session, Undo{});
   act(session, SetContact{"leftFoot", from, to, ContactChange::kFound});
   EXPECT_EQ(feet(), found);
-  EXPECT_NEAR(slideOf(session, "leftFoot", middle, to), held, 1e-6);
+  EXPECT_NEAR(slideOf(session, "leftFoot", middle, to), pinnedSlide, 1e-6);
 
   // Where it swings, it can be held.
   const double swing = to + 0.15;

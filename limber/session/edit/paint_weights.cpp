@@ -32,8 +32,8 @@ Vec3 barycentricOf(const SurfaceDab& dab) {
 }
 
 // 1 at the middle of the brush, 0 at its rim, level at both.
-double falloff(double share) {
-  const double left = std::clamp(1 - share, 0.0, 1.0);
+double falloff(double fraction) {
+  const double left = std::clamp(1 - fraction, 0.0, 1.0);
   return left * left * (3 - 2 * left);
 }
 
@@ -198,14 +198,14 @@ SkinWeights mirroredWeights(const RiggedModel& rig, const PaintSurface& surface,
     const double side = mirror.plane.normal.dot(surface.distance().mesh().position(welded)) - mirror.plane.offset;
     if (image == kNoIndex || (image != welded && (side > 0) == (from == MirrorFrom::kLeft))) continue;
     const std::span<const Index> sources = surface.sources(welded);
-    std::map<Index, double> shares;
+    std::map<Index, double> weightByJoint;
     for (const Influence& seen : influencesOf(rig.weights, surface.sources(image).front())) {
       const Index other = mirror.joints[seen.joint];
-      shares[other == kNoIndex ? seen.joint : other] += seen.weight;
-      if (image == welded) shares[seen.joint] += seen.weight;
+      weightByJoint[other == kNoIndex ? seen.joint : other] += seen.weight;
+      if (image == welded) weightByJoint[seen.joint] += seen.weight;
     }
     std::vector<Influence> influences;
-    for (const auto& [joint, weight] : shares) influences.push_back({joint, weight});
+    for (const auto& [joint, weight] : weightByJoint) influences.push_back({joint, weight});
     WeightRow(weights, sources.front(), locked).replace(std::move(influences));
     for (const Index source : sources) copyRow(weights, sources.front(), source);
   }

@@ -10,10 +10,10 @@ namespace limber {
 
 namespace {
 
-constexpr double kLeastWeight = 1e-9;
-constexpr double kLeastSpread = 1e-12;  // of the longest side squared: less is a point
-constexpr double kRounding = 1e-5;      // of the longest side
-constexpr double kAtRest = 1e-6;        // metres and radians: what differs less from the rest pose is no movement
+constexpr double kMinWeight = 1e-9;
+constexpr double kMinSpread = 1e-12;  // of the longest side squared: less is a point
+constexpr double kRounding = 1e-5;    // of the longest side
+constexpr double kAtRest = 1e-6;      // metres and radians: what differs less from the rest pose is no movement
 
 Box boxOf(const std::vector<Vec3f>& positions) {
   Box box;
@@ -43,9 +43,9 @@ PoseTransfer::PoseTransfer(const RiggedModel& from, const RiggedModel& to) : fro
   middle_ = box.center();
   patches_.resize(to.skeleton().joints.size());
   gather();
-  const double least = kLeastSpread * box.longestSide() * box.longestSide();
+  const double least = kMinSpread * box.longestSide() * box.longestSide();
   for (Patch& patch : patches_) {
-    if (patch.weight < kLeastWeight) continue;
+    if (patch.weight < kMinWeight) continue;
     patch.mean /= patch.weight;
     patch.spread -= patch.weight * patch.mean.squaredNorm();
     if (patch.spread < least * patch.weight) patch.spread = 0;
@@ -53,33 +53,33 @@ PoseTransfer::PoseTransfer(const RiggedModel& from, const RiggedModel& to) : fro
 }
 
 void PoseTransfer::gather() {
-  const auto shareOf = [](Patch& patch, Index joint) -> Share& {
-    for (Share& share : patch.shares) {
-      if (share.joint == joint) return share;
+  const auto momentsOf = [](Patch& patch, Index joint) -> JointMoments& {
+    for (JointMoments& jointMoments : patch.moments) {
+      if (jointMoments.joint == joint) return jointMoments;
     }
-    patch.shares.push_back({joint});
-    return patch.shares.back();
+    patch.moments.push_back({joint});
+    return patch.moments.back();
   };
   for (Index v = 0; v < to_.weights.vertexCount(); ++v) {
-    const Vec3 place = to_.geometry().positions[v].cast<double>() - middle_;
-    const Mat3 square = place * place.transpose();
+    const Vec3 position = to_.geometry().positions[v].cast<double>() - middle_;
+    const Mat3 square = position * position.transpose();
     forEachWeight(to_.weights, v, [&](Index joint, double ownWeight) {
       // Squared: a joint follows what it holds, not what it merely touches.
       const double own = ownWeight * ownWeight;
       Patch& patch = patches_[joint];
       patch.weight += own;
-      patch.mean += own * place;
-      patch.spread += own * place.squaredNorm();
-      double held = 0;
+      patch.mean += own * position;
+      patch.spread += own * position.squaredNorm();
+      double totalWeight = 0;
       const auto add = [&](Index by, double weight) {
-        Share& share = shareOf(patch, by);
-        share.weight += own * weight;
-        share.first += own * weight * place;
-        share.second += own * weight * square;
-        held += weight;
+        JointMoments& jointMoments = momentsOf(patch, by);
+        jointMoments.weight += own * weight;
+        jointMoments.first += own * weight * position;
+        jointMoments.second += own * weight * square;
+        totalWeight += weight;
       };
       forEachWeight(from_.weights, v, add);
-      if (held == 0) add(from_.skeleton().jointCount(), 1);
+      if (totalWeight == 0) add(from_.skeleton().jointCount(), 1);
     });
   }
 }
@@ -101,13 +101,13 @@ Pose PoseTransfer::apply(const Pose& pose) const {
   for (Index j = 0; j < patches_.size(); ++j) {
     const std::optional<Index> parent = to_.skeleton().joints[j].parent;
     const Patch& patch = patches_[j];
-    if (patch.weight >= kLeastWeight && patch.spread > 0) {
+    if (patch.weight >= kMinWeight && patch.spread > 0) {
       Vec3 after = Vec3::Zero();
       Mat3 correlation = Mat3::Zero();
-      for (const Share& share : patch.shares) {
-        const Affine& moved = skin[share.joint];
-        after += moved.linear() * share.first + share.weight * moved.translation();
-        correlation += moved.linear() * share.second + moved.translation() * share.first.transpose();
+      for (const JointMoments& jointMoments : patch.moments) {
+        const Affine& moved = skin[jointMoments.joint];
+        after += moved.linear() * jointMoments.first + jointMoments.weight * moved.translation();
+        correlation += moved.linear() * jointMoments.second + moved.translation() * jointMoments.first.transpose();
       }
       correlation -= after * patch.mean.transpose();
       const Quat rotation = bestRotation(correlation);
@@ -140,17 +140,17 @@ Clip transferClip(const PoseTransfer& transfer, const RiggedModel& from, const C
   result.name = clip.name;
   for (Index j = 0; j < to.skeleton().jointCount() && !poses.empty(); ++j) {
     const Joint& joint = to.skeleton().joints[j];
-    Track<Vec3f> way{j, Interpolation::kLinear, times, {}};
+    Track<Vec3f> displacement{j, Interpolation::kLinear, times, {}};
     Track<Eigen::Quaternionf> turns{j, Interpolation::kLinear, times, {}};
     bool moves = false, rotates = !joint.parent;
     for (const Pose& pose : poses) {
       const Transform& local = pose.locals[j];
       moves |= (local.translation - joint.rest.translation).norm() > kAtRest;
       rotates |= local.rotation.angularDistance(joint.rest.rotation) > kAtRest;
-      way.values.push_back(local.translation.cast<float>());
+      displacement.values.push_back(local.translation.cast<float>());
       turns.values.push_back(local.rotation.cast<float>().normalized());
     }
-    if (moves) result.translations.push_back(std::move(way));
+    if (moves) result.translations.push_back(std::move(displacement));
     if (rotates) result.rotations.push_back(std::move(turns));
   }
   if (!poses.empty()) setInterpolation(result, interpolationOf(clip));

@@ -25,7 +25,7 @@ class PoseTransfer {
  private:
   // What a joint of `from` holds of the vertices that a joint of `to` holds: moments of the bound vertices about the
   // middle of the model.
-  struct Share {
+  struct JointMoments {
     Index joint = 0;  // of `from`; its joint count: vertices that it leaves where they are
     double weight = 0;
     Vec3 first = Vec3::Zero();
@@ -34,7 +34,7 @@ class PoseTransfer {
   struct Patch {
     double weight = 0, spread = 0;  // spread: of the squared distances from the mean
     Vec3 mean = Vec3::Zero();
-    std::vector<Share> shares;
+    std::vector<JointMoments> moments;
   };
 
   void gather();

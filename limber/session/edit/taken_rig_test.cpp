@@ -64,14 +64,14 @@ Bytes personNpz() {
   const AssetSkeleton skeleton = readSkeleton(asset);
   const SkinWeights weights = readWeights(asset, geometry, skeleton);
   const std::size_t vertices = geometry.positions.size(), joints = skeleton.skeleton.jointCount();
-  std::vector<double> positions, places, shares(vertices * joints, 0), corners, tree(joints, -1);
+  std::vector<double> positions, coordinates, fractions(vertices * joints, 0), corners, tree(joints, -1);
   for (const Vec3f& p : geometry.positions) positions.insert(positions.end(), {p.x(), p.y(), p.z()});
   for (const Affine& global : restGlobals(skeleton.skeleton)) {
     const Vec3 p = global.translation();
-    places.insert(places.end(), {p.x(), p.y(), p.z()});
+    coordinates.insert(coordinates.end(), {p.x(), p.y(), p.z()});
   }
   for (const Triangle& t : geometry.triangles) corners.insert(corners.end(), t.begin(), t.end());
-  for (Index v = 0; v < vertices; ++v) shares[v * joints + weights.jointsOf(v)[0]] = 1;
+  for (Index v = 0; v < vertices; ++v) fractions[v * joints + weights.jointsOf(v)[0]] = 1;
   for (std::size_t j = 0; j < joints; ++j) {
     if (const auto& parent = skeleton.skeleton.joints[j].parent) tree[j] = *parent;
   }
@@ -83,9 +83,9 @@ Bytes personNpz() {
   };
   add("v_template.npy", {vertices, 3}, positions);
   add("f.npy", {geometry.triangles.size(), 3}, corners);
-  add("weights.npy", {vertices, joints}, shares);
+  add("weights.npy", {vertices, joints}, fractions);
   add("kintree_table.npy", {2, joints}, tree);
-  add("J.npy", {joints, 3}, places);
+  add("J.npy", {joints, 3}, coordinates);
   return testing::storedZip(files);
 }
 
@@ -128,15 +128,15 @@ TEST(TakenRig, AnotherModelsJointsWeightsAndShapesComeOver) {
   Session session = openedModel("giant.glb");
   const Bytes before = session.exportModel(ExportFormat::kGlb);
   const std::vector<std::string> oldNames = jointNames(session);
-  const std::vector<Affine> oldPlaces = restGlobals(session.state().rig->skeleton());
+  const std::vector<Affine> oldTransforms = restGlobals(session.state().rig->skeleton());
   EXPECT_EQ(sessionState(session)["gaps"], nullptr);
   perform(session, TransferRig{"hero.glb"});
   const RiggedModel& rig = *session.state().rig;
   ASSERT_EQ(jointNames(session).size(), oldNames.size());
-  const std::vector<Affine> places = restGlobals(rig.skeleton());
+  const std::vector<Affine> transforms = restGlobals(rig.skeleton());
   for (std::size_t j = 0; j < oldNames.size(); ++j) {
     EXPECT_EQ(jointNames(session)[j], oldNames[j] + "_hero");
-    EXPECT_LT((places[j].translation() - oldPlaces[j].translation()).norm(), 0.02) << oldNames[j];
+    EXPECT_LT((transforms[j].translation() - oldTransforms[j].translation()).norm(), 0.02) << oldNames[j];
   }
   const Json state = sessionState(session);
   EXPECT_EQ(state["own_rig"], true);
@@ -191,12 +191,12 @@ TEST(TakenRig, BytesAtHandAreTheSameAsTheCommand) {
 
 TEST(TakenRig, ABodyInSmplsLayoutServesAsAModel) {
   Session session = openedModel("giant.glb");
-  const std::vector<Affine> oldPlaces = restGlobals(session.state().rig->skeleton());
+  const std::vector<Affine> oldTransforms = restGlobals(session.state().rig->skeleton());
   perform(session, TransferRig{"person.npz"});
-  const std::vector<Affine> places = restGlobals(session.state().rig->skeleton());
-  ASSERT_EQ(places.size(), oldPlaces.size());
-  for (std::size_t j = 0; j < places.size(); ++j) {
-    EXPECT_LT((places[j].translation() - oldPlaces[j].translation()).norm(), 0.05) << j;
+  const std::vector<Affine> transforms = restGlobals(session.state().rig->skeleton());
+  ASSERT_EQ(transforms.size(), oldTransforms.size());
+  for (std::size_t j = 0; j < transforms.size(); ++j) {
+    EXPECT_LT((transforms[j].translation() - oldTransforms[j].translation()).norm(), 0.05) << j;
   }
 }
 

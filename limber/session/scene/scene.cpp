@@ -12,7 +12,7 @@
 #include "limber/document/read.h"
 #include "limber/session/refuse.h"
 #include "limber/session/scene/scene_io.h"
-#include "limber/session/scene/scene_places.h"
+#include "limber/session/scene/scene_layout.h"
 
 namespace limber {
 
@@ -130,9 +130,10 @@ struct SessionScene::Runner {
         refuse(ErrorKind::kHoldsItself, fmt::format("'{}' would hold itself", c.member), {{"name", c.member}});
       }
       const Affine joint = scene.toScene(to) * jointFrame(now.members[to].session->state(), c.joint);
-      Affine place = scene.toScene(m);
-      if (c.snap) place.pretranslate(joint.translation() - place * boxOf(*member.session, Affine::Identity()).center());
-      member.attachment = Attachment{now.members[to].session, c.joint, joint.inverse() * place};
+      Affine transform = scene.toScene(m);
+      if (c.snap)
+        transform.pretranslate(joint.translation() - transform * boxOf(*member.session, Affine::Identity()).center());
+      member.attachment = Attachment{now.members[to].session, c.joint, joint.inverse() * transform};
     });
   }
   void operator()(const DetachMember& c) const {
@@ -323,7 +324,7 @@ void SessionScene::commit(const Command& command, std::shared_ptr<Session> sessi
 void SessionScene::trim() {
   std::map<const Session*, std::size_t> counts;
   std::size_t kept = 0;
-  while (kept < std::min(undo_.size(), kMostSteps)) {
+  while (kept < std::min(undo_.size(), kMaxSteps)) {
     const Session* of = undo_[undo_.size() - 1 - kept].session.get();
     if (of && ++counts[of] > of->undoCount()) break;
     ++kept;

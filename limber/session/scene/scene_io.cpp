@@ -4,7 +4,7 @@
 
 #include "limber/document/merge_assets.h"
 #include "limber/document/write.h"
-#include "limber/session/scene/scene_places.h"
+#include "limber/session/scene/scene_layout.h"
 #include "limber/session/scene/session_io.h"
 
 namespace limber {
@@ -23,7 +23,7 @@ Bytes sceneGlb(std::span<const SceneMember> members) {
     AssetPart part{posedDocument(member.session->state()), member.name, member.placement.toAffine(), std::nullopt};
     if (member.attachment) {
       const SessionState& carrier = member.attachment->to->state();
-      part.place = member.attachment->offset;
+      part.transform = member.attachment->offset;
       part.carrier = {partOf(members, member.attachment->to.get()),
                       carrier.rig->binding().jointNode[requireJoint(carrier, member.attachment->joint)]};
     }
@@ -70,9 +70,9 @@ ExportMesh sceneMesh(std::span<const SceneMember> members) {
   ExportMesh all;
   for (std::size_t m = 0; m < members.size(); ++m) {
     ExportMesh mesh = posedMesh(members[m].session->state());
-    const Affine place = toScene(members, m);
-    const Mat3 turn = decompose(place).rotation.toRotationMatrix();
-    for (Vec3f& position : mesh.positions) position = (place * position.cast<double>()).cast<float>();
+    const Affine transform = toScene(members, m);
+    const Mat3 turn = decompose(transform).rotation.toRotationMatrix();
+    for (Vec3f& position : mesh.positions) position = (transform * position.cast<double>()).cast<float>();
     for (Vec3f& normal : mesh.normals) normal = (turn * normal.cast<double>()).cast<float>();
     append(all, std::move(mesh));
   }

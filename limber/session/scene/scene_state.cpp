@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "limber/session/scene/scene_places.h"
+#include "limber/session/scene/scene_layout.h"
 #include "limber/session/scene/state_json.h"
 #include "limber/session/session_state.h"
 

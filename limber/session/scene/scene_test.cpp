@@ -9,7 +9,7 @@
 
 #include "limber/core/error.h"
 #include "limber/document/scene/scene_graph.h"
-#include "limber/session/scene/scene_places.h"
+#include "limber/session/scene/scene_layout.h"
 #include "limber/session/scene/scene_state.h"
 #include "limber/session/session_state.h"
 #include "limber/session/testing/models.h"
@@ -157,10 +157,10 @@ TEST(SessionScene, ARemovedMemberComesBackWhole) {
   run(scene, ChooseMember{"person 2"});
   run(scene, TurnJoint{leaf, {0, 0, 1}, 25});
   const Bytes before = scene.exportModel(ExportFormat::kGlb);
-  const Affine held = scene.toScene(2);
+  const Affine attachedTransform = scene.toScene(2);
   run(scene, RemoveMember{"person 2"});
   EXPECT_THAT(namesOf(scene), ElementsAre("person", "biped"));
-  EXPECT_LT(distanceOf(scene.toScene(1), held), 1e-6);
+  EXPECT_LT(distanceOf(scene.toScene(1), attachedTransform), 1e-6);
   run(scene, Undo{});
   EXPECT_EQ(scene.exportModel(ExportFormat::kGlb), before);
   run(scene, Undo{});  // the pose that it had before it was removed

@@ -37,14 +37,14 @@ SavedSession savedOf(const SessionState& state) {
   saved.skinning = state.skinning;
   saved.handles = skeleton.jointCount();
   if (!state.pins.empty()) saved.templateName = state.templateName;
-  for (const JointPin& pin : state.pins) saved.pins.push_back({pin.joint, pin.place});
+  for (const JointPin& pin : state.pins) saved.pins.push_back({pin.joint, pin.position});
   saved.ik = state.ik;
   saved.limbsFollow = state.limbsFollow;
   saved.solver = state.solver;
   saved.deformer = state.deformer;
   saved.limits = state.limitsText;
   saved.locked.assign(state.locked.begin(), state.locked.end());
-  for (const HeldTarget& target : state.targets) {
+  for (const PinnedTarget& target : state.targets) {
     saved.targets.push_back({skeleton.joints[target.joint].name, target.position, target.rotation});
   }
   if (const Clip* clip = state.movement.clip()) {

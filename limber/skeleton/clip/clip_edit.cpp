@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "limber/core/error.h"
-#include "limber/skeleton/clip/held_clip.h"
+#include "limber/skeleton/clip/keep_duration.h"
 #include "limber/skeleton/motion.h"
 
 namespace limber {

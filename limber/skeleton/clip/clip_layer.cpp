@@ -66,7 +66,7 @@ std::vector<std::pair<double, double>> reachOf(const std::vector<LayerKey>& keys
 // Where the offset begins and ends, moments of the clip's frames in between, the layer's keys, and what it takes to
 // have kLayerRate of them a second. The clip does not get longer.
 std::vector<double> bakedTimes(const std::vector<LayerKey>& keys, const std::vector<double>& frames, double duration) {
-  constexpr double kMostGap = 1.01 / kLayerRate;
+  constexpr double kMaxGap = 1.01 / kLayerRate;
   std::vector<double> times;
   for (const auto& [from, end] : reachOf(keys)) {
     const double to = std::min(end, duration);
@@ -81,7 +81,7 @@ std::vector<double> bakedTimes(const std::vector<LayerKey>& keys, const std::vec
     std::sort(inside.begin(), inside.end());
     for (std::size_t k = 0; k + 1 < inside.size(); ++k) {
       const double gap = inside[k + 1] - inside[k];
-      const int steps = std::max(1, static_cast<int>(std::ceil(gap / kMostGap)));
+      const int steps = std::max(1, static_cast<int>(std::ceil(gap / kMaxGap)));
       for (int s = 0; s < steps; ++s) times.push_back(inside[k] + gap * s / steps);
     }
     times.push_back(to);

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kLongestTurn = 0.05;        // radians between two cached rotations
 constexpr double kLongestPackedTurn = 0.25;  // radians between two packed ones
-constexpr std::size_t kMostKeys = 2;         // packed keys of four joints, against those of the longest of their tracks
+constexpr std::size_t kMaxKeys = 2;          // packed keys of four joints, against those of the longest of their tracks
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 // The interval round `seconds` in which a track changes evenly; all before its first and after its last key.
@@ -185,7 +185,7 @@ std::vector<float> ClipPlayer::Packed::packedTimes(std::size_t group) const {
   std::sort(times.begin(), times.end());
   times.erase(std::unique(times.begin(), times.end()), times.end());
   if (times.empty()) times.push_back(0);
-  return linear && times.size() <= kMostKeys * most ? times : std::vector<float>();
+  return linear && times.size() <= kMaxKeys * most ? times : std::vector<float>();
 }
 
 // Fills the group's keys, with some between where a joint turns far, so that rotations stay even in time.

@@ -11,7 +11,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kMostLoopFrames = 1500;
+constexpr double kMaxLoopFrames = 1500;
 constexpr double kStill = 1e-4;  // of the skeleton's size: less movement than this is none
 
 // The joints that the body travels with: all but those above it, which may stay where they are.
@@ -37,7 +37,7 @@ std::vector<Vec3> standingPoints(const Skeleton& skeleton, const Clip& clip, std
   const Quat since = turn * rest.inverse();
   const double heading = 2 * std::atan2(since.y(), since.w());  // the twist about +Y
   const Eigen::AngleAxisd back(-heading, Vec3::UnitY());
-  const Vec3 place = globals[body].translation(), origin(place.x(), 0, place.z());
+  const Vec3 position = globals[body].translation(), origin(position.x(), 0, position.z());
   for (Vec3& point : points) point = back * (point - origin);
   return points;
 }
@@ -54,7 +54,7 @@ std::optional<ClipLoop> findLoop(const Skeleton& skeleton, const Clip& clip, con
   const double duration = clip.duration();
   if (options.body >= skeleton.jointCount() || duration < options.shortest) return std::nullopt;
   const Quat rest(decompose(restGlobals(skeleton)[options.body]).rotation);
-  const double rate = std::min(options.framesPerSecond, kMostLoopFrames / duration);
+  const double rate = std::min(options.framesPerSecond, kMaxLoopFrames / duration);
   const Index frames = frameCount(clip, rate);
   const std::vector<Index> joints = travellers(skeleton, options.body);
   std::vector<std::vector<Vec3>> poses;

@@ -183,7 +183,7 @@ JoinedLoop joinLoop(const Skeleton& skeleton, const Clip& clip, Index body) {
   for (std::size_t k = 0; k < times.size(); ++k) carriers.move(partAt(k).inverse(Eigen::Isometry), poses[k]);
   result.gap = farthestJoint(skeleton, poses.back(), poses.front());
   Box box;
-  for (const Vec3& place : restPositions(skeleton)) box.add(place);
+  for (const Vec3& position : restPositions(skeleton)) box.add(position);
   if (result.gap <= kClosedLoop * box.diagonal()) return result;
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
     const Seam<Offset> seam(times.size() - 1, duration, [&](std::size_t f, std::size_t g) {

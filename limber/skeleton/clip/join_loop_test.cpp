@@ -30,20 +30,20 @@ Skeleton leg() {
 // Steps that end a little off where they began, in pose and in speed, of somebody who walks and turns by `turn`.
 Clip steps(double turn) {
   Clip clip;
-  Track<Vec3f> places{0, Interpolation::kLinear, {}, {}};
+  Track<Vec3f> positions{0, Interpolation::kLinear, {}, {}};
   Track<Eigen::Quaternionf> turns{0, Interpolation::kLinear, {}, {}}, bends{1, Interpolation::kLinear, {}, {}};
   for (int k = 0; k <= kSeconds * kRate; ++k) {
     const double time = k / kRate, u = time / kSeconds;
     const Quat heading(Eigen::AngleAxisd(turn * u, Vec3::UnitY()));
     const double swing = 0.5 * std::sin(kFullTurn * u) + 0.04 * u * u;
-    places.times.push_back(static_cast<float>(time));
+    positions.times.push_back(static_cast<float>(time));
     const Vec3 at = turn == 0 ? Vec3(0, 1, 1.2 * time) : Vec3(heading * Vec3(-3, 1, 0));
-    places.values.emplace_back((at + Vec3(0, 0.02 * std::cos(kFullTurn * u) + 0.01 * u, 0)).cast<float>());
+    positions.values.emplace_back((at + Vec3(0, 0.02 * std::cos(kFullTurn * u) + 0.01 * u, 0)).cast<float>());
     turns.values.emplace_back((heading * Quat(Eigen::AngleAxisd(0.2 * swing, Vec3::UnitX()))).cast<float>());
     bends.values.emplace_back(Quat(Eigen::AngleAxisd(0.6 + swing, Vec3::UnitX())).cast<float>());
   }
-  turns.times = bends.times = places.times;
-  clip.translations = {places};
+  turns.times = bends.times = positions.times;
+  clip.translations = {positions};
   clip.rotations = {turns, bends};
   return clip;
 }
@@ -81,8 +81,9 @@ TEST(JoinLoop, EndsAsItBegins) {
     }
     EXPECT_NEAR(begin[0].y(), end[0].y(), 1e-6);
     // As far as before.
-    const Vec3 way = end[0] - begin[0], wayBefore = at(skeleton, clip, kSeconds)[0] - at(skeleton, clip, 0)[0];
-    EXPECT_LT((way - wayBefore - Vec3(0, way.y() - wayBefore.y(), 0)).norm(), 0.01);
+    const Vec3 displacement = end[0] - begin[0],
+               displacementBefore = at(skeleton, clip, kSeconds)[0] - at(skeleton, clip, 0)[0];
+    EXPECT_LT((displacement - displacementBefore - Vec3(0, displacement.y() - displacementBefore.y(), 0)).norm(), 0.01);
     // Little was changed for it, and the seam has no kink: 0.053 radians a second before.
     EXPECT_GT(joined.gap, 0.005);
     EXPECT_LT(joined.largestChange, joined.gap);
@@ -110,7 +111,7 @@ TEST(JoinLoop, WhatStandsAboveTheBodyStays) {
   Clip clip = steps(0.7);
   for (auto& track : clip.rotations) ++track.joint;
   clip.translations[0].joint = 1;
-  for (Vec3f& place : clip.translations[0].values) place = (up * place.cast<double>()).cast<float>();
+  for (Vec3f& position : clip.translations[0].values) position = (up * position.cast<double>()).cast<float>();
   for (auto& turn : clip.rotations[0].values) turn = (Quat(up.linear()) * turn.cast<double>()).cast<float>();
   const JoinedLoop joined = joinLoop(skeleton, clip, 1), plain = joinLoop(leg(), steps(0.7), 0);
   EXPECT_NEAR(joined.gap, plain.gap, 1e-5);

@@ -6,7 +6,7 @@ namespace limber {
 
 namespace {
 
-constexpr float kHeld = 1e-6f;  // metres, radians and the like: what exporters round the same value to
+constexpr float kConstant = 1e-6f;  // metres, radians and the like: what exporters round the same value to
 
 const Vec3f& numbersOf(const Vec3f& value) {
   return value;
@@ -22,7 +22,7 @@ bool moves(const Track<Value>& track) {
   for (std::size_t v = 0; v < track.values.size() && track.times.size() > 1; ++v) {
     const bool isTangent = cubic && v % 3 != 1;
     const auto& numbers = numbersOf(track.values[v]);
-    if ((isTangent ? numbers.norm() : (numbers - first).norm()) > kHeld) return true;
+    if ((isTangent ? numbers.norm() : (numbers - first).norm()) > kConstant) return true;
   }
   return false;
 }

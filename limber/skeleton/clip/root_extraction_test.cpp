@@ -40,20 +40,20 @@ Skeleton walker(bool withRoot) {
 // Linear keys 30 times a second.
 Clip walk(Index hips, double seconds, const std::function<Transform(double)>& hipsAt) {
   Clip clip;
-  Track<Vec3f> places;
+  Track<Vec3f> positions;
   Track<Eigen::Quaternionf> turns, nods;
-  places.joint = turns.joint = hips;
+  positions.joint = turns.joint = hips;
   nods.joint = hips + 1;
   for (int k = 0; k <= std::lround(seconds * 30); ++k) {
     const double time = k / 30.0;
     const Transform local = hipsAt(time);
-    places.times.push_back(static_cast<float>(time));
-    places.values.emplace_back(local.translation.cast<float>());
+    positions.times.push_back(static_cast<float>(time));
+    positions.values.emplace_back(local.translation.cast<float>());
     turns.values.emplace_back(local.rotation.cast<float>());
     nods.values.emplace_back(Quat(Eigen::AngleAxisd(0.3 * std::sin(5 * time), Vec3::UnitX())).cast<float>());
   }
-  turns.times = nods.times = places.times;
-  clip.translations = {places};
+  turns.times = nods.times = positions.times;
+  clip.translations = {positions};
   clip.rotations = {turns, nods};
   return clip;
 }
@@ -75,7 +75,7 @@ Transform around(double time) {
   return local;
 }
 
-std::vector<Vec3> places(const Skeleton& skeleton, const Clip& clip, double time) {
+std::vector<Vec3> positions(const Skeleton& skeleton, const Clip& clip, double time) {
   Pose pose = restPose(skeleton);
   sampleClip(clip, time, pose);
   return posePositions(skeleton, pose);
@@ -92,7 +92,7 @@ void expectUnmoved(const Skeleton& skeleton, const Clip& a, const Clip& b, Index
   RandomValues random(5);
   for (int i = 0; i < 600; ++i) {
     const double time = random.uniform(0, a.duration());
-    const std::vector<Vec3> before = places(skeleton, a, time), after = places(skeleton, b, time);
+    const std::vector<Vec3> before = positions(skeleton, a, time), after = positions(skeleton, b, time);
     for (Index j = 0; j < skeleton.jointCount(); ++j) {
       if (j == root) continue;
       ASSERT_LT((before[j] - after[j]).norm(), 2e-6) << skeleton.joints[j].name << " at " << time;  // of 1.7 m
@@ -112,7 +112,7 @@ TEST(ExtractRootMotion, MovesNothingButTheRoot) {
         const Clip extracted = extractRootMotion(skeleton, clip, 0, rootTrajectory(skeleton, clip, options));
         checkClip(extracted, skeleton);
         expectUnmoved(skeleton, clip, extracted, 0);
-        EXPECT_GT((places(skeleton, extracted, 1)[0] - places(skeleton, extracted, 0)[0]).norm(), 1);
+        EXPECT_GT((positions(skeleton, extracted, 1)[0] - positions(skeleton, extracted, 0)[0]).norm(), 1);
       }
     }
   }
@@ -123,7 +123,7 @@ TEST(ExtractRootMotion, IsAsExactBelowAScale) {
   Clip clip = walk(1, 4, around);
   skeleton.joints[0].rest.scale = Vec3::Constant(100);
   for (Index j = 1; j < skeleton.jointCount(); ++j) skeleton.joints[j].rest.translation /= 100;
-  for (Vec3f& place : clip.translations[0].values) place /= 100;
+  for (Vec3f& position : clip.translations[0].values) position /= 100;
   RootMotionOptions options = about(1);
   options.heading = true;
   const Clip extracted = extractRootMotion(skeleton, clip, 0, rootTrajectory(skeleton, clip, options));
@@ -141,7 +141,7 @@ TEST(ExtractRootMotion, TakesMovementsOfTheRootThatAreThere) {
   const Clip extracted = extractRootMotion(skeleton, clip, 0, rootTrajectory(skeleton, clip, options));
   checkClip(extracted, skeleton);
   expectUnmoved(skeleton, clip, extracted, 0);
-  for (const Vec3f& place : extracted.translations.back().values) EXPECT_EQ(place.y(), 0);
+  for (const Vec3f& position : extracted.translations.back().values) EXPECT_EQ(position.y(), 0);
 }
 
 TEST(ExtractRootMotion, CurvesAndStepsAreFollowed) {
@@ -162,7 +162,7 @@ TEST(ExtractRootMotion, CurvesAndStepsAreFollowed) {
   clip.translations[0] = {1, Interpolation::kStep, {0, 0.5f, 1, 2}, {{0, 1, 0}, {0, 1, 1}, {0, 1, 5}, {0, 1, 6}}};
   const Clip stepped = extractRootMotion(skeleton, clip, 0, rootTrajectory(skeleton, clip, options));
   for (const double time : {0.1, 0.4999, 0.5001, 0.75, 0.9999, 1.5}) {
-    EXPECT_LT((places(skeleton, clip, time)[3] - places(skeleton, stepped, time)[3]).norm(), 2e-6) << time;
+    EXPECT_LT((positions(skeleton, clip, time)[3] - positions(skeleton, stepped, time)[3]).norm(), 2e-6) << time;
   }
 }
 
@@ -248,7 +248,7 @@ TEST(ClipInPlace, ARootThatStandsStillStaysSo) {
     for (const auto& track : inPlace.translations) EXPECT_NE(track.joint, 0u);
     for (const auto& track : inPlace.rotations) EXPECT_NE(track.joint, 0u);
     for (double time = 0; time < 4; time += 0.05) {
-      const std::vector<Vec3> before = places(skeleton, clip, time), after = places(skeleton, inPlace, time);
+      const std::vector<Vec3> before = positions(skeleton, clip, time), after = positions(skeleton, inPlace, time);
       for (Index j = 1; j < skeleton.jointCount(); ++j) {
         EXPECT_LT((travel.at(time).toAffine() * after[j] - before[j]).norm(), 1e-5) << j << " at " << time;
       }
@@ -267,7 +267,7 @@ TEST(ClipInPlace, ABodyThatIsHeldStaysWhole) {
   const RootTrajectory travel = rootTrajectory(skeleton, clip, about(1));
   const Clip inPlace = clipInPlace(skeleton, clip, 1, travel);
   for (double time = 0; time < 2; time += 0.1) {
-    const std::vector<Vec3> before = places(skeleton, clip, time), after = places(skeleton, inPlace, time);
+    const std::vector<Vec3> before = positions(skeleton, clip, time), after = positions(skeleton, inPlace, time);
     for (Index j = 1; j < skeleton.jointCount(); ++j) {
       EXPECT_LT((travel.at(time).toAffine() * after[j] - before[j]).norm(), 1e-5) << j << " at " << time;
     }
@@ -283,7 +283,7 @@ TEST(ClipInPlace, TheBodyStaysAboveItsPlace) {
     const Clip inPlace = clipInPlace(skeleton, clip, options.body, rootTrajectory(skeleton, clip, options));
     checkClip(inPlace, skeleton);
     for (double time = 0; time < 6; time += 0.05) {
-      const Vec3 hips = places(skeleton, inPlace, time)[0], before = places(skeleton, clip, time)[0];
+      const Vec3 hips = positions(skeleton, inPlace, time)[0], before = positions(skeleton, clip, time)[0];
       EXPECT_LT(std::hypot(hips.x(), hips.z() - 0.05), heading ? 0.25 : 0.06) << time;
       EXPECT_NEAR(hips.y(), before.y(), 1e-5);
     }

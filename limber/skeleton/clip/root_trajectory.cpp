@@ -12,14 +12,14 @@ namespace limber {
 
 namespace {
 
-constexpr double kSampleRate = 60, kMostSamples = 1e6;  // of the path that is smoothed
-constexpr double kLeastRate = 30;                       // keys a second of the trajectory
-constexpr double kDeviations = 3;                       // where the Gaussian ends
-constexpr double kLeastTwist = 0.05;  // of 1: the part of a rotation about +Y, below which it has no heading
+constexpr double kSampleRate = 60, kMaxSamples = 1e6;  // of the path that is smoothed
+constexpr double kMinRate = 30;                        // keys a second of the trajectory
+constexpr double kDeviations = 3;                      // where the Gaussian ends
+constexpr double kMinTwist = 0.05;  // of 1: the part of a rotation about +Y, below which it has no heading
 
 // Rotation about +Y nearest to `turn`; nullopt where all are about as near.
 std::optional<double> twist(const Quat& turn) {
-  if (std::hypot(turn.y(), turn.w()) < kLeastTwist) return std::nullopt;
+  if (std::hypot(turn.y(), turn.w()) < kMinTwist) return std::nullopt;
   return 2 * std::atan2(turn.y(), turn.w());
 }
 
@@ -29,7 +29,7 @@ double unwrapped(double angle, double before) {
 }
 
 // Where the body is at one moment: x, y, z and heading.
-using Place = Eigen::Vector4d;
+using RootState = Eigen::Vector4d;
 
 class BodyPath {
  public:
@@ -42,14 +42,14 @@ class BodyPath {
   bool has(Index joint) const { return std::find(chain_.begin(), chain_.end(), joint) != chain_.end(); }
 
   // Calls go on in time, for the heading's sake.
-  Place at(double seconds) {
+  RootState at(double seconds) {
     sampleClip(clip_, seconds, pose_);
     const Affine now = global();
     const Quat since(decompose(now).rotation * decompose(rest_).rotation.inverse());
     heading_ = unwrapped(twist(since).value_or(heading_), heading_);
-    Place place;
-    place << now.translation(), heading_;
-    return place;
+    RootState state;
+    state << now.translation(), heading_;
+    return state;
   }
 
  private:
@@ -77,12 +77,12 @@ std::vector<float> trajectoryTimes(const Clip& clip, const BodyPath& path) {
   add(clip.translations);
   add(clip.rotations);
   add(clip.scales);
-  const double frame = 1 / std::max(frameRateOf(clip), kLeastRate);
+  const double frame = 1 / std::max(frameRateOf(clip), kMinRate);
   std::vector<float> times;
   for (const double key : eachOnce(std::move(keys))) {
     if (!times.empty()) {
       const double before = times.back();
-      const double steps = std::min(std::round((key - before) / frame), kMostSamples);
+      const double steps = std::min(std::round((key - before) / frame), kMaxSamples);
       for (double k = 1; k < steps; ++k) times.push_back(static_cast<float>(before + (key - before) * k / steps));
     }
     times.push_back(static_cast<float>(key));
@@ -95,13 +95,13 @@ std::vector<float> trajectoryTimes(const Clip& clip, const BodyPath& path) {
 class SampledPath {
  public:
   SampledPath(BodyPath& path, double duration, bool loops) : loops_(loops) {
-    count_ = static_cast<std::ptrdiff_t>(std::clamp(std::ceil(duration * kSampleRate), 1.0, kMostSamples));
+    count_ = static_cast<std::ptrdiff_t>(std::clamp(std::ceil(duration * kSampleRate), 1.0, kMaxSamples));
     step_ = duration / static_cast<double>(count_);
-    for (std::ptrdiff_t i = 0; i <= count_; ++i) places_.push_back(path.at(step_ * static_cast<double>(i)));
+    for (std::ptrdiff_t i = 0; i <= count_; ++i) states_.push_back(path.at(step_ * static_cast<double>(i)));
     // Cycle after cycle the stride goes where the body has turned to.
-    turn_ = places_.back().w() - places_.front().w();
+    turn_ = states_.back().w() - states_.front().w();
     const Quat turn(Eigen::AngleAxisd(turn_, Vec3::UnitY()));
-    stride_ = places_.back().head<3>() - turn * places_.front().head<3>();
+    stride_ = states_.back().head<3>() - turn * states_.front().head<3>();
   }
 
   void smooth(double deviation) {
@@ -113,46 +113,46 @@ class SampledPath {
       kernel.push_back(reach > 0 ? std::exp(-0.5 * x * x) : 1);
       sum += kernel.back();
     }
-    std::vector<Place> result;
+    std::vector<RootState> result;
     for (std::ptrdiff_t i = 0; i <= count_; ++i) {
-      Place place = Place::Zero();
-      for (std::ptrdiff_t k = -reach; k <= reach; ++k) place += kernel[k + reach] / sum * beyond(i + k);
-      result.push_back(place);
+      RootState state = RootState::Zero();
+      for (std::ptrdiff_t k = -reach; k <= reach; ++k) state += kernel[k + reach] / sum * beyond(i + k);
+      result.push_back(state);
     }
-    places_ = std::move(result);
+    states_ = std::move(result);
   }
 
-  Place at(double seconds) const {
-    const double place = step_ > 0 ? std::clamp(seconds / step_, 0.0, static_cast<double>(count_)) : 0;
-    const auto before = std::min(static_cast<std::ptrdiff_t>(place), count_ - 1);
-    const double u = place - static_cast<double>(before);
-    return (1 - u) * places_[before] + u * places_[before + 1];
+  RootState at(double seconds) const {
+    const double state = step_ > 0 ? std::clamp(seconds / step_, 0.0, static_cast<double>(count_)) : 0;
+    const auto before = std::min(static_cast<std::ptrdiff_t>(state), count_ - 1);
+    const double u = state - static_cast<double>(before);
+    return (1 - u) * states_[before] + u * states_[before + 1];
   }
 
  private:
-  Place beyond(std::ptrdiff_t i) const {
-    if (i >= 0 && i <= count_) return places_[i];
+  RootState beyond(std::ptrdiff_t i) const {
+    if (i >= 0 && i <= count_) return states_[i];
     if (!loops_) {
-      const Place& end = i < 0 ? places_.front() : places_.back();
+      const RootState& end = i < 0 ? states_.front() : states_.back();
       const std::ptrdiff_t mirrored = std::clamp<std::ptrdiff_t>(i < 0 ? -i : 2 * count_ - i, 0, count_);
-      return 2 * end - places_[mirrored];
+      return 2 * end - states_[mirrored];
     }
     const std::ptrdiff_t cycles = i >= 0 ? i / count_ : -((-i + count_ - 1) / count_);
-    Place place = places_[i - cycles * count_];
+    RootState state = states_[i - cycles * count_];
     const Quat turn(Eigen::AngleAxisd(cycles > 0 ? turn_ : -turn_, Vec3::UnitY()));
     for (std::ptrdiff_t c = 0; c < std::abs(cycles); ++c) {
-      const Vec3 p = place.head<3>();
-      place.head<3>() = cycles > 0 ? Vec3(turn * p + stride_) : Vec3(turn * (p - stride_));
-      place.w() += cycles > 0 ? turn_ : -turn_;
+      const Vec3 p = state.head<3>();
+      state.head<3>() = cycles > 0 ? Vec3(turn * p + stride_) : Vec3(turn * (p - stride_));
+      state.w() += cycles > 0 ? turn_ : -turn_;
     }
-    return place;
+    return state;
   }
 
   bool loops_;
   std::ptrdiff_t count_ = 1;
   double step_ = 0, turn_ = 0;
   Vec3 stride_ = Vec3::Zero();
-  std::vector<Place> places_;
+  std::vector<RootState> states_;
 };
 
 }  // namespace
@@ -180,18 +180,18 @@ RootTrajectory rootTrajectory(const Skeleton& skeleton, const Clip& clip, const 
   BodyPath path(skeleton, clip, options.body);
   RootTrajectory result;
   result.times = trajectoryTimes(clip, path);
-  std::vector<Place> places;
+  std::vector<RootState> states;
   if (options.smoothing > 0) {
     SampledPath sampled(path, clip.duration(), options.loops);
     sampled.smooth(options.smoothing);
-    for (const float time : result.times) places.push_back(sampled.at(time));
+    for (const float time : result.times) states.push_back(sampled.at(time));
   } else {
-    for (const float time : result.times) places.push_back(path.at(time));
+    for (const float time : result.times) states.push_back(path.at(time));
   }
   const Vec3 rest = path.rest().translation();
-  for (const Place& place : places) {
-    const double heading = options.heading ? place.w() : 0;
-    Vec3 offset = place.head<3>() - Eigen::AngleAxisd(heading, Vec3::UnitY()) * rest;
+  for (const RootState& state : states) {
+    const double heading = options.heading ? state.w() : 0;
+    Vec3 offset = state.head<3>() - Eigen::AngleAxisd(heading, Vec3::UnitY()) * rest;
     if (!options.height) offset.y() = 0;
     result.offsets.push_back(offset);
     if (options.heading) result.headings.push_back(heading);

@@ -87,11 +87,11 @@ TEST_F(IkMirrorTest, ACharacterThatHasTurnedRoundIsStillSymmetric) {
   std::vector<IkTarget> targets = symmetricTargets(random);
   Pose pose = restPose(humanoid);
   EXPECT_TRUE(isSymmetric(humanoid, pose, targets, &limits));
-  const Affine place = Eigen::Translation3d(1, 0, -2) * Eigen::AngleAxisd(0.7, Vec3(0.2, 1, 0.1).normalized());
+  const Affine transform = Eigen::Translation3d(1, 0, -2) * Eigen::AngleAxisd(0.7, Vec3(0.2, 1, 0.1).normalized());
   Transform& root = pose.locals[0];
-  root = decompose(place * root.toAffine());
+  root = decompose(transform * root.toAffine());
   EXPECT_FALSE(isSymmetric(humanoid, pose, targets, &limits));
-  for (IkTarget& target : targets) target.position = place * target.position;
+  for (IkTarget& target : targets) target.position = transform * target.position;
   EXPECT_TRUE(isSymmetric(humanoid, pose, targets, &limits));
 
   IkOptions options;

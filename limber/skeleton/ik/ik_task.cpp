@@ -45,7 +45,7 @@ class TaskCheck {
   }
   void operator()(const BalanceTask& task) const {
     require(!task.supports.empty(), "has no supports");
-    require(task.supports.size() <= kMostSupports, fmt::format("has more than {} supports", kMostSupports));
+    require(task.supports.size() <= kMaxSupports, fmt::format("has more than {} supports", kMaxSupports));
     for (const Index support : task.supports) joint(support);
   }
   void operator()(const KeepOutTask& task) const {
@@ -212,9 +212,9 @@ bool IkTaskResult::met() const {
 
 IkTaskResult solveIkTasks(const Skeleton& skeleton, Pose& pose, std::span<const IkTask> tasks,
                           const JointLimits* limits, const IkTaskOptions& options) {
-  if (tasks.size() > kMostIkTasks) {
+  if (tasks.size() > kMaxIkTasks) {
     throw Error(ErrorCode::kBadArgument, fmt::format("{} tasks are asked for at once", tasks.size()), {},
-                fmt::format("at most {} can be", kMostIkTasks));
+                fmt::format("at most {} can be", kMaxIkTasks));
   }
   for (std::size_t t = 0; t < tasks.size(); ++t) {
     const TaskCheck check(skeleton, t);

@@ -102,8 +102,8 @@ struct IkTaskResult {
 };
 
 // Each unmet task is solved alone once or twice more, and the steps' systems grow with the rows.
-inline constexpr std::size_t kMostIkTasks = 200;  // two and more for each joint of a body with hands
-inline constexpr std::size_t kMostSupports = 100;
+inline constexpr std::size_t kMaxIkTasks = 200;  // two and more for each joint of a body with hands
+inline constexpr std::size_t kMaxSupports = 100;
 
 // Brings `pose`, the start, to one that serves the tasks: priority by priority, each within what leaves the earlier
 // ones as well served as they were (to the tolerance), by the damped steps in null spaces of the whole-body solver;

@@ -146,12 +146,12 @@ class IkTaskRows::Measure {
     }
     std::vector<Eigen::Vector2d> corners;
     for (const Index support : task.supports) corners.push_back(flat(position(support)));
-    const HullPlace place = placeOnHull(flat(center), corners);
-    const Vec3 out(place.out.x(), 0, place.out.y());
-    set(0, place.distance);
+    const HullPoint onHull = nearestOnHull(flat(center), corners);
+    const Vec3 out(onHull.out.x(), 0, onHull.out.y());
+    set(0, onHull.distance);
     pushMasses(0, -out);
-    push(0, task.supports[place.a], (1 - place.weight) * out);
-    push(0, task.supports[place.b], place.weight * out);
+    push(0, task.supports[onHull.a], (1 - onHull.weight) * out);
+    push(0, task.supports[onHull.b], onHull.weight * out);
   }
 
   void operator()(const KeepOutTask& task) const {

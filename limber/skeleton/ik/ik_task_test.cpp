@@ -55,9 +55,9 @@ class IkTaskTest : public ::testing::Test {
   IkTaskOptions options;
 };
 
-void bendAtRandom(IkSystem& system, RandomValues& random, double share) {
+void bendAtRandom(IkSystem& system, RandomValues& random, double fraction) {
   for (std::size_t n = 0; n < system.nodes.size(); ++n) {
-    system.locals[n] = system.locals[n].slerp(share, random.rotation());
+    system.locals[n] = system.locals[n].slerp(fraction, random.rotation());
   }
   system.forward();
 }
@@ -389,7 +389,7 @@ TEST_F(IkTaskTest, BadTasksAreRefusedByNumber) {
   refused({BalanceTask{}});
   refused({KeepOutTask{0, Vec3::Zero(), Vec3::Zero(), 0}});
   refused({CouplingTask{3, 3, 1}});
-  refused({BalanceTask{std::vector<Index>(kMostSupports + 1, 0)}});
+  refused({BalanceTask{std::vector<Index>(kMaxSupports + 1, 0)}});
   Pose pose = restPose(humanoid);
   EXPECT_THROW(solve({}, pose), Error);
 }
@@ -397,9 +397,9 @@ TEST_F(IkTaskTest, BadTasksAreRefusedByNumber) {
 TEST_F(IkTaskTest, MoreTasksThanCanBeAreRefused) {
   Pose pose = restPose(humanoid);
   const IkTask task = {PositionTask{joint("head"), position(pose, "head")}};
-  EXPECT_TRUE(solve(std::vector<IkTask>(kMostIkTasks, task), pose).met());
+  EXPECT_TRUE(solve(std::vector<IkTask>(kMaxIkTasks, task), pose).met());
   try {
-    solve(std::vector<IkTask>(kMostIkTasks + 1, task), pose);
+    solve(std::vector<IkTask>(kMaxIkTasks + 1, task), pose);
     ADD_FAILURE();
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::kBadArgument);

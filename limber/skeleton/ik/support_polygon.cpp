@@ -48,9 +48,9 @@ std::vector<std::size_t> hullOf(Corners corners) {
 
 }  // namespace
 
-HullPlace placeOnHull(const Eigen::Vector2d& point, Corners corners) {
+HullPoint nearestOnHull(const Eigen::Vector2d& point, Corners corners) {
   const std::vector<std::size_t> hull = hullOf(corners);
-  HullPlace outside, inside;
+  HullPoint outside, inside;
   inside.distance = -std::numeric_limits<double>::infinity();
   bool isInside = hull.size() > 2;
   for (std::size_t i = 0; i < hull.size(); ++i) {

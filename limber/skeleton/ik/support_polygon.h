@@ -11,7 +11,7 @@ namespace limber {
 
 // Outside by `distance`, or inside by minus that, nearest to the point between corners a and b (numbers of the points
 // given), away from it in direction `out`.
-struct HullPlace {
+struct HullPoint {
   double distance = std::numeric_limits<double>::infinity();
   std::size_t a = 0, b = 0;
   double weight = 0;  // of b, 0 to 1; of a the rest
@@ -20,7 +20,7 @@ struct HullPlace {
 
 // Hulls without an area (one point, or all on a line) have no inside. At least one corner, all finite. The hull is
 // Andrew's monotone chain (1979). Cost: O(n log n).
-HullPlace placeOnHull(const Eigen::Vector2d& point, std::span<const Eigen::Vector2d> corners);
+HullPoint nearestOnHull(const Eigen::Vector2d& point, std::span<const Eigen::Vector2d> corners);
 
 // Where a segment from a to b comes nearest to a point: the weight of b, 0 to 1.
 template <class Vector>

@@ -51,13 +51,13 @@ TEST(SupportPolygon, DistancesAreThoseByAllSegments) {
     }
     for (int k = 0; k < 10; ++k) {
       const Point point(random.uniform(-1.5, 1.5), random.uniform(-1.5, 1.5));
-      const HullPlace place = placeOnHull(point, corners);
-      EXPECT_NEAR(place.distance, distanceByAllSegments(point, corners), 1e-8) << trial;
-      ASSERT_TRUE(place.a < count && place.b < count);
-      const Point nearest = corners[place.a] + place.weight * (corners[place.b] - corners[place.a]);
-      EXPECT_NEAR(place.out.norm(), 1, 1e-9);
-      EXPECT_LT((nearest + place.distance * place.out - point).norm(), 1e-8) << trial;
-      inside += place.distance < 0;
+      const HullPoint onHull = nearestOnHull(point, corners);
+      EXPECT_NEAR(onHull.distance, distanceByAllSegments(point, corners), 1e-8) << trial;
+      ASSERT_TRUE(onHull.a < count && onHull.b < count);
+      const Point nearest = corners[onHull.a] + onHull.weight * (corners[onHull.b] - corners[onHull.a]);
+      EXPECT_NEAR(onHull.out.norm(), 1, 1e-9);
+      EXPECT_LT((nearest + onHull.distance * onHull.out - point).norm(), 1e-8) << trial;
+      inside += onHull.distance < 0;
     }
   }
   EXPECT_GT(inside, 200);
@@ -65,9 +65,9 @@ TEST(SupportPolygon, DistancesAreThoseByAllSegments) {
 
 TEST(SupportPolygon, OnePointHasNoInside) {
   const std::vector<Point> corners = {Point(1, 2)};
-  const HullPlace place = placeOnHull(Point(1, 2), corners);
-  EXPECT_EQ(place.distance, 0);
-  EXPECT_EQ(placeOnHull(Point(4, 6), corners).distance, 5);
+  const HullPoint nearest = nearestOnHull(Point(1, 2), corners);
+  EXPECT_EQ(nearest.distance, 0);
+  EXPECT_EQ(nearestOnHull(Point(4, 6), corners).distance, 5);
 }
 
 }  // namespace

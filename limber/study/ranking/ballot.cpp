@@ -92,16 +92,16 @@ class CsvReader {
   std::size_t at_ = 0, line_ = 1;
 };
 
-using ColumnPlaces = std::array<std::size_t, kColumns.size()>;
+using ColumnIndices = std::array<std::size_t, kColumns.size()>;
 
-ColumnPlaces findColumns(const CsvRecord& head) {
-  ColumnPlaces places = {};
+ColumnIndices findColumns(const CsvRecord& head) {
+  ColumnIndices columnIndices = {};
   for (std::size_t c = 0; c < kColumns.size(); ++c) {
     const auto found = std::find(head.fields.begin(), head.fields.end(), kColumns[c]);
     if (found == head.fields.end()) failAt(head.line, fmt::format("no column is called \"{}\"", kColumns[c]));
-    places[c] = static_cast<std::size_t>(found - head.fields.begin());
+    columnIndices[c] = static_cast<std::size_t>(found - head.fields.begin());
   }
-  return places;
+  return columnIndices;
 }
 
 CellKind kindNamed(const std::string& name, std::size_t line) {
@@ -118,10 +118,10 @@ Choice choiceNamed(const std::string& name, std::size_t line) {
   failAt(line, fmt::format("\"{}\" is no choice (first, second, alike)", name));
 }
 
-Vote voteOf(const CsvRecord& record, const ColumnPlaces& places, std::size_t columns) {
+Vote voteOf(const CsvRecord& record, const ColumnIndices& columnIndices, std::size_t columns) {
   if (record.fields.size() != columns)
     failAt(record.line, fmt::format("has {} fields in place of {}", record.fields.size(), columns));
-  const auto field = [&](std::size_t column) -> const std::string& { return record.fields[places[column]]; };
+  const auto field = [&](std::size_t column) -> const std::string& { return record.fields[columnIndices[column]]; };
   Vote vote{field(0), kindNamed(field(1), record.line),  field(2), field(3),
             field(4), choiceNamed(field(5), record.line)};
   if (vote.first.empty() || vote.second.empty()) failAt(record.line, "a method has no name");
@@ -138,20 +138,20 @@ std::vector<Vote> parseVotes(std::string_view text) {
   CsvReader reader(text);
   const std::optional<CsvRecord> head = reader.next();
   if (!head) failAt(1, "is empty");
-  const ColumnPlaces places = findColumns(*head);
+  const ColumnIndices columnIndices = findColumns(*head);
   std::vector<Vote> votes;
   while (const std::optional<CsvRecord> record = reader.next()) {
-    votes.push_back(voteOf(*record, places, head->fields.size()));
+    votes.push_back(voteOf(*record, columnIndices, head->fields.size()));
   }
   return votes;
 }
 
 std::vector<Vote> lastVotes(std::span<const Vote> votes) {
   std::vector<Vote> kept;
-  std::map<std::tuple<std::string, CellKind, std::string, std::string, std::string>, std::size_t> places;
+  std::map<std::tuple<std::string, CellKind, std::string, std::string, std::string>, std::size_t> indices;
   for (const Vote& vote : votes) {
     const auto [low, high] = std::minmax(vote.first, vote.second);
-    const auto [found, isNew] = places.try_emplace({vote.voter, vote.kind, vote.subject, low, high}, kept.size());
+    const auto [found, isNew] = indices.try_emplace({vote.voter, vote.kind, vote.subject, low, high}, kept.size());
     if (isNew) {
       kept.push_back(vote);
     } else {

@@ -9,8 +9,8 @@ namespace limber {
 
 namespace {
 
-constexpr int kMostSteps = 10000;
-constexpr int kMostCenterings = 100;
+constexpr int kMaxSteps = 10000;
+constexpr int kMaxCenterings = 100;
 constexpr double kSettled = 1e-9;  // largest change of a strength, of itself
 
 std::vector<double> winsOf(std::size_t players, std::span<const PairScore> scores) {
@@ -25,7 +25,7 @@ std::vector<double> winsOf(std::size_t players, std::span<const PairScore> score
 // The scale that the prior wants, by Newton's method on its logarithm: what was played says nothing of it, and so it
 // would settle last, the later the more was played.
 void center(std::span<double> strengths) {
-  for (int step = 0; step < kMostCenterings; ++step) {
+  for (int step = 0; step < kMaxCenterings; ++step) {
     double excess = 0, slope = 0;
     for (const double strength : strengths) {
       const double chance = strength / (strength + 1);
@@ -48,7 +48,7 @@ std::vector<double> bradleyTerryStrengths(std::size_t players, std::span<const P
   const std::vector<double> wins = winsOf(players, scores);
   std::vector<double> strengths(players, 1.0), before, played(players);
   double change = 1;
-  for (int step = 0; step < kMostSteps && change > kSettled; ++step) {
+  for (int step = 0; step < kMaxSteps && change > kSettled; ++step) {
     for (std::size_t i = 0; i < players; ++i) played[i] = 2 * kImaginedGames / (strengths[i] + 1);
     for (const PairScore& score : scores) {
       const double games = (score.firstWins + score.secondWins) / (strengths[score.first] + strengths[score.second]);

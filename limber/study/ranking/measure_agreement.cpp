@@ -15,7 +15,7 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kLeastMethods = 3;  // two agree or not by chance alone
+constexpr std::size_t kMinMethods = 3;  // two agree or not by chance alone
 
 // Of one method on one model.
 using MethodValues = std::map<std::string, double, std::less<>>;  // by the measure's name
@@ -75,7 +75,7 @@ MeasureAgreement agreementOf(const Measure& measure, const Measure& truth, std::
       a.push_back(goodness(measure, own->second));
       b.push_back(goodness(truth, known->second));
     }
-    if (a.size() < kLeastMethods) continue;
+    if (a.size() < kMinMethods) continue;
     const std::optional<double> correlation = rankCorrelation(a, b);
     if (!correlation) continue;
     ++result.models;

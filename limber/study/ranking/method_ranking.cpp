@@ -28,9 +28,9 @@ struct Grid {
   std::map<std::pair<std::size_t, std::size_t>, std::size_t> cellOf;  // of method, subject
 };
 
-std::size_t placeIn(std::vector<std::string>& names, std::map<std::string, std::size_t>& places,
+std::size_t indexIn(std::vector<std::string>& names, std::map<std::string, std::size_t>& indices,
                     const std::string& name) {
-  const auto [found, isNew] = places.try_emplace(name, names.size());
+  const auto [found, isNew] = indices.try_emplace(name, names.size());
   if (isNew) names.push_back(name);
   return found->second;
 }
@@ -66,8 +66,8 @@ Grid gridOf(const StudyResult& study, CellKind kind, const Measure& measure, con
     const StudyCell& cell = study.cells[i];
     if (cell.kind != kind || !asksFor(cell, measure) || (!group.empty() && cell.group != group)) continue;
     if (joints && jointsOf(cell) != *joints) continue;
-    const std::size_t method = placeIn(grid.methods, methods, cell.method());
-    grid.cellOf.try_emplace({method, placeIn(grid.subjects, subjects, cell.subject())}, i);
+    const std::size_t method = indexIn(grid.methods, methods, cell.method());
+    grid.cellOf.try_emplace({method, indexIn(grid.subjects, subjects, cell.subject())}, i);
   }
   return grid;
 }
@@ -147,7 +147,7 @@ double medianSeconds(const StudyResult& study, const Grid& grid, std::size_t met
 
 std::vector<std::size_t> worstCells(const StudyResult& study, const Grid& grid, const Measure& measure) {
   std::vector<std::pair<double, std::size_t>> losses;
-  for (const auto& [place, cell] : grid.cellOf) {
+  for (const auto& [pair, cell] : grid.cellOf) {
     const std::optional<double> value = study.results[cell].valueOf(measure);
     if (value) losses.push_back({measure.better == Better::kMore ? *value : -*value, cell});
   }

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kResamples = 2000;
 constexpr double kTail = 0.025;  // on either side of the interval
-constexpr std::size_t kMostExact = 200;
+constexpr std::size_t kMaxExact = 200;
 
 // Twice the mean ranks of the magnitudes, so that those of ties are whole numbers.
 std::vector<std::size_t> doubledRanks(std::span<const double> sorted) {
@@ -92,7 +92,7 @@ double signedRankP(std::span<const double> differences) {
   const RankSums sums = rankSums(differences);
   if (sums.ranks.empty()) return 1;
   const std::size_t least = std::min(sums.positive, sums.negative);
-  const double tail = sums.ranks.size() <= kMostExact ? lowerTail(sums.ranks, least) : normalTail(sums.ranks, least);
+  const double tail = sums.ranks.size() <= kMaxExact ? lowerTail(sums.ranks, least) : normalTail(sums.ranks, least);
   return std::min(1.0, 2 * tail);
 }
 

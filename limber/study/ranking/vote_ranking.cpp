@@ -22,8 +22,8 @@ namespace limber {
 namespace {
 
 constexpr int kVoteSamples = 2000;
-constexpr std::size_t kMostMethods = 1000;  // samples x methods are kept at once
-constexpr double kVoteTail = 0.025;         // on either side of the interval
+constexpr std::size_t kMaxMethods = 1000;  // samples x methods are kept at once
+constexpr double kVoteTail = 0.025;        // on either side of the interval
 
 // The votes of a kind: methods by name, each two that were compared, and the votes as numbers, sorted.
 struct Games {
@@ -144,16 +144,16 @@ MethodPair pairOfVotes(const Games& games, std::size_t pair, bool isTurned) {
 }
 
 // In the order of the ranking: place of each method, by number.
-std::vector<MethodPair> pairsOf(const Games& games, std::span<const std::size_t> places) {
+std::vector<MethodPair> pairsOf(const Games& games, std::span<const std::size_t> indices) {
   std::vector<std::tuple<std::size_t, std::size_t, MethodPair>> found;
   for (std::size_t i = 0; i < games.pairs.size(); ++i) {
     auto [first, second] = games.pairs[i];
-    const bool isTurned = places[first] > places[second];
+    const bool isTurned = indices[first] > indices[second];
     if (isTurned) std::swap(first, second);
     MethodPair pair = pairOfVotes(games, i, isTurned);
     pair.first = games.methods[first];
     pair.second = games.methods[second];
-    found.emplace_back(places[first], places[second], std::move(pair));
+    found.emplace_back(indices[first], indices[second], std::move(pair));
   }
   std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) {
     return std::tie(std::get<0>(a), std::get<1>(a)) < std::tie(std::get<0>(b), std::get<1>(b));
@@ -178,21 +178,21 @@ VoteRanking rankingOf(std::span<const Vote> votes, CellKind kind) {
   }
   ranking.voters = voters.size();
   const Games games = gamesOf(votes, kind);
-  if (games.methods.size() > kMostMethods) {
+  if (games.methods.size() > kMaxMethods) {
     throw Error(ErrorCode::kLimit,
-                fmt::format("votes on {} methods are more than {}", games.methods.size(), kMostMethods));
+                fmt::format("votes on {} methods are more than {}", games.methods.size(), kMaxMethods));
   }
   ranking.votes = games.votes.size();
   const std::vector<VoteScore> scores = scoresOf(games);
-  std::vector<std::size_t> order(scores.size()), places(scores.size());
+  std::vector<std::size_t> order(scores.size()), indices(scores.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return scores[a].strength > scores[b].strength; });
-  for (std::size_t place = 0; place < order.size(); ++place) {
-    places[order[place]] = place;
-    ranking.scores.push_back(scores[order[place]]);
+  for (std::size_t index = 0; index < order.size(); ++index) {
+    indices[order[index]] = index;
+    ranking.scores.push_back(scores[order[index]]);
   }
-  ranking.pairs = pairsOf(games, places);
+  ranking.pairs = pairsOf(games, indices);
   return ranking;
 }
 

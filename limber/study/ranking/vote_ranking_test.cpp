@@ -68,15 +68,15 @@ TEST(VoteRanking, FindsTheStrengthsThatVotesWereDrawnFrom) {
 
 // Of 40 draws, at least nine in ten intervals hold the expected chance of it.
 TEST(VoteRanking, IntervalsHoldTheTruthAboutAsOftenAsTheySay) {
-  int held = 0;
+  int covered = 0;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     const std::vector<VoteRanking> rankings = rankByVotes(drawnVotes(std::vector<double>{1, 1, 1, 1}, 5, seed));
     for (const VoteScore& score : rankings[0].scores) {
-      held += score.low <= 0.5 && 0.5 <= score.high ? 1 : 0;
+      covered += score.low <= 0.5 && 0.5 <= score.high ? 1 : 0;
     }
   }
-  EXPECT_GE(held, 144);
-  EXPECT_LT(held, 160);
+  EXPECT_GE(covered, 144);
+  EXPECT_LT(covered, 160);
 }
 
 TEST(VoteRanking, ATieIsHalfAVoteOfEach) {

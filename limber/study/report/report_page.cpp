@@ -22,7 +22,7 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kMostEmbedded = 13000000;  // bytes of pictures as text, of a page below 15 MB
+constexpr std::size_t kMaxEmbedded = 13000000;  // bytes of pictures as text, of a page below 15 MB
 
 std::string numberCell(double value) {
   return fmt::format("<td data-value=\"{}\"{}>{}</td>",
@@ -209,7 +209,7 @@ PictureSource pictureSource(const StudyResult& study, const std::filesystem::pat
       if (!unseen) total += static_cast<std::size_t>((size + 2) / 3 * 4);
     }
   }
-  if (total > kMostEmbedded)
+  if (total > kMaxEmbedded)
     return [](const CellPicture& picture) { return htmlText(percentEncode(picture.file.generic_string())); };
   return [folder](const CellPicture& picture) {
     return "data:image/png;base64," + encodeBase64(readFile(folder / picture.file));

@@ -15,7 +15,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kToldApart = 0.05;  // p, the usual level
+constexpr double kSignificant = 0.05;  // p, the usual level
 
 // A table holds what one command measures.
 constexpr std::pair<MeasureSource, std::string_view> kTables[] = {
@@ -77,8 +77,8 @@ std::string tableText(const KindRankings& kind, const GroupRankings& group, cons
 }
 
 std::string pText(double p) {
-  constexpr double kLeastShown = 0.001;
-  return p < kLeastShown ? fmt::format("p below {}", kLeastShown) : fmt::format("p = {:.3f}", p);
+  constexpr double kMinShown = 0.001;
+  return p < kMinShown ? fmt::format("p below {}", kMinShown) : fmt::format("p = {:.3f}", p);
 }
 
 // The one that the test says is better comes first, whatever the medians.
@@ -98,7 +98,7 @@ std::string pairsText(const Columns& columns) {
   for (const Ranking* ranking : columns) {
     for (const MethodPair& pair : ranking->pairs) {
       hasPairs = true;
-      if (pair.p < kToldApart) lines += pairText(*ranking->measure, pair);
+      if (pair.p < kSignificant) lines += pairText(*ranking->measure, pair);
     }
   }
   if (!hasPairs) return {};
@@ -144,7 +144,7 @@ std::string studySummary(const StudyResult& study, const SummaryOptions& options
       "# {}\n\n{}. Medians, in brackets their 95 % intervals. A method that failed on a model counts as worse there "
       "than any\nthat did not. Methods are told apart by Wilcoxon's signed rank test over the models, p after Holm "
       "below {}.\n\n",
-      markdownText(study.title), counted(study.cells.size(), "cell"), kToldApart);
+      markdownText(study.title), counted(study.cells.size(), "cell"), kSignificant);
   for (const KindRankings& kind : studyRankings(study)) {
     for (const GroupRankings& group : kind.groups) text += groupText(kind, group, options);
     text += failuresText(study, kind);

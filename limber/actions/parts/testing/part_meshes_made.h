@@ -82,9 +82,9 @@ inline BlockPerson blockPerson() {
   BlockPerson person;
   std::map<std::array<int, 3>, Index> known;
   const auto vertex = [&](const Eigen::Vector3i& at) {
-    const auto [place, fresh] = known.try_emplace({at.x(), at.y(), at.z()}, person.mesh.vertexCount());
+    const auto [entry, fresh] = known.try_emplace({at.x(), at.y(), at.z()}, person.mesh.vertexCount());
     if (fresh) person.mesh.positions.push_back(0.1f * at.cast<float>());
-    return place->second;
+    return entry->second;
   };
   for (const Block& block : blocks) {
     for (int x = block.from.x(); x < block.to.x(); ++x) {

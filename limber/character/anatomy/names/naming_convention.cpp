@@ -527,7 +527,7 @@ class TreeCheck {
 
 // Animals that are named as people are: the trunk lies across the legs, and the arms reach as low as these. Of people
 // the arms of no rest pose do.
-bool standsOnArms(const ConventionMatch& match, std::span<const Vec3> rest) {
+bool restsOnArms(const ConventionMatch& match, std::span<const Vec3> rest) {
   // Cosine between trunk and legs, 32 degrees: above it the trunk goes on from the legs.
   constexpr double kAcross = 0.85;
   // Fractions of the legs' length by which hands, or elbows where there are no hands, may be higher than feet.
@@ -551,7 +551,7 @@ std::optional<ConventionMatch> findConvention(const Skeleton& skeleton) {
   std::optional<ConventionMatch> match = Finder(skeleton).find();
   if (!match) return std::nullopt;
   const std::vector<Vec3> rest = restPositions(skeleton);
-  if (!TreeCheck(skeleton, rest, *match).agrees() || standsOnArms(*match, rest)) return std::nullopt;
+  if (!TreeCheck(skeleton, rest, *match).agrees() || restsOnArms(*match, rest)) return std::nullopt;
   return match;
 }
 

@@ -42,10 +42,10 @@ inline PoseSequence walk(const Skeleton& person, std::size_t frames = 120, doubl
     }
     pose.locals[joint("rightUpperArm")].rotation = turn(Vec3::UnitZ(), 40 + 20 * std::sin(phase));
     // The foot that is not lifted stays where it is.
-    const int stands = leftLift > 0 ? 1 : 0;
-    const Index foot = stands == 0 ? leftFoot : rightFoot;
+    const int stance = leftLift > 0 ? 1 : 0;
+    const Index foot = stance == 0 ? leftFoot : rightFoot;
     std::vector<Affine> globals = poseGlobals(person, pose);
-    if (standing != stands) {
+    if (standing != stance) {
       if (standing < 0) {
         planted = globals[foot].translation();
       } else {
@@ -54,7 +54,7 @@ inline PoseSequence walk(const Skeleton& person, std::size_t frames = 120, doubl
         planted += globals[foot].translation() - globals[old].translation();
       }
       planted.y() = restGlobals(person)[foot].translation().y();
-      standing = stands;
+      standing = stance;
     }
     pose.locals[hips].translation += planted - globals[foot].translation();
     sequence.poses.push_back(std::move(pose));
@@ -212,9 +212,9 @@ inline Skeleton quadrupedWithHocks() {
 inline Skeleton chainedAnimal(int trunk, int neck, int tail) {
   const Skeleton simple = quadruped(0.5);
   Skeleton made;
-  const auto chain = [&](const std::string& stem, int first, int count, std::string parent, const Vec3& way) {
+  const auto chain = [&](const std::string& stem, int first, int count, std::string parent, const Vec3& displacement) {
     for (int i = first; i < first + count; ++i) {
-      addJoint(made, stem + std::to_string(i), parent, way / count);
+      addJoint(made, stem + std::to_string(i), parent, displacement / count);
       parent = stem + std::to_string(i);
     }
     return parent;
@@ -247,9 +247,10 @@ inline Skeleton flyer(const FlyerBuild& build, double degrees = 0) {
   addJoint(made, "origin", "", Vec3::Zero());
   made.joints[0].rest.rotation = turn(Vec3::UnitY(), degrees);
   addJoint(made, "carrier", "origin", Vec3(0, 0.5, 0));
-  const auto chain = [&](const std::string& stem, int count, std::string parent, const Vec3& first, const Vec3& way) {
+  const auto chain = [&](const std::string& stem, int count, std::string parent, const Vec3& first,
+                         const Vec3& displacement) {
     for (int i = 1; i <= count; ++i) {
-      addJoint(made, stem + std::to_string(i), parent, i == 1 ? first : Vec3(way / (count - 1)));
+      addJoint(made, stem + std::to_string(i), parent, i == 1 ? first : Vec3(displacement / (count - 1)));
       parent = stem + std::to_string(i);
     }
     return parent;
@@ -283,9 +284,9 @@ inline const JointMatch* matchOf(const SkeletonMap& map, const std::string& part
 
 // Metres that the feet's joints move along the ground once the source's have stood still for a tenth of a second: these
 // feet stop all at once, and what is at speed when it is planted needs a moment.
-inline double slidWay(const Skeleton& person, const PoseSequence& motion, const Skeleton& other,
-                      const PoseSequence& result) {
-  double way = 0;
+inline double slideDistance(const Skeleton& person, const PoseSequence& motion, const Skeleton& other,
+                            const PoseSequence& result) {
+  double pathLength = 0;
   for (const char* foot : {"leftFoot", "rightFoot"}) {
     const Index from = person.find(foot).value(), to = other.find(foot).value();
     int still = 0;
@@ -297,10 +298,10 @@ inline double slidWay(const Skeleton& person, const PoseSequence& motion, const 
       still = step(person, motion, from).norm() < 1e-4 ? still + 1 : 0;
       if (still <= 6) continue;
       const Vec3 moved = step(other, result, to);
-      way += std::hypot(moved.x(), moved.z());
+      pathLength += std::hypot(moved.x(), moved.z());
     }
   }
-  return way;
+  return pathLength;
 }
 
 // The bone that a person's head, eye, limb or finger goes on from.

@@ -146,7 +146,7 @@ class BinaryParser {
     if (encoding > 1) fail("an array of it is packed in a way that is not known");
     if (encoding == 0 && size != stored.size()) fail("an array of it is not as long as it says");
     if (encoding == 1) {
-      if (size / kMostInflatedPerByte > stored.size()) fail("an array of it is not as long as it says");
+      if (size / kMaxInflatedPerByte > stored.size()) fail("an array of it is not as long as it says");
       if (size > inflationLeft_) {
         throw Error(ErrorCode::kLimit, "its arrays inflate to more than those of a file of its size should", {},
                     "export it again without compression");

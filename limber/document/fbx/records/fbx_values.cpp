@@ -19,14 +19,14 @@ To converted(From value) {
 }
 
 template <typename To>
-std::optional<To> arithmetic(const FbxNode& node, std::size_t place) {
-  if (place >= node.values.size()) return std::nullopt;
+std::optional<To> arithmetic(const FbxNode& node, std::size_t index) {
+  if (index >= node.values.size()) return std::nullopt;
   return std::visit(
       [](const auto& value) -> std::optional<To> {
         if constexpr (std::is_arithmetic_v<std::decay_t<decltype(value)>>) return converted<To>(value);
         return std::nullopt;
       },
-      node.values[place]);
+      node.values[index]);
 }
 
 template <typename To>
@@ -49,16 +49,16 @@ std::vector<To> arrayOf(const FbxNode& node, std::string_view child) {
 
 }  // namespace
 
-std::optional<double> fbxNumber(const FbxNode& node, std::size_t place) {
-  return arithmetic<double>(node, place);
+std::optional<double> fbxNumber(const FbxNode& node, std::size_t index) {
+  return arithmetic<double>(node, index);
 }
 
-std::optional<std::int64_t> fbxInteger(const FbxNode& node, std::size_t place) {
-  return arithmetic<std::int64_t>(node, place);
+std::optional<std::int64_t> fbxInteger(const FbxNode& node, std::size_t index) {
+  return arithmetic<std::int64_t>(node, index);
 }
 
-std::optional<std::string_view> fbxText(const FbxNode& node, std::size_t place) {
-  const auto* text = place < node.values.size() ? std::get_if<std::string>(&node.values[place]) : nullptr;
+std::optional<std::string_view> fbxText(const FbxNode& node, std::size_t index) {
+  const auto* text = index < node.values.size() ? std::get_if<std::string>(&node.values[index]) : nullptr;
   return text ? std::optional<std::string_view>(*text) : std::nullopt;
 }
 

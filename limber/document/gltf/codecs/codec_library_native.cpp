@@ -87,8 +87,8 @@ class NativeDracoMesh : public DracoMesh {
     const std::size_t components = attribute.num_components();
     if (components > value.size()) return false;
     for (draco::PointIndex point(0); point < mesh.num_points(); ++point, out += components * sizeof(T)) {
-      const auto place = attribute.mapped_index(point);
-      if (!attribute.ConvertValue(place, static_cast<std::int8_t>(components), value.data())) return false;
+      const auto index = attribute.mapped_index(point);
+      if (!attribute.ConvertValue(index, static_cast<std::int8_t>(components), value.data())) return false;
       std::memcpy(out, value.data(), components * sizeof(T));
     }
     return true;

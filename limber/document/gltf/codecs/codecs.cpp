@@ -41,14 +41,14 @@ bool hasPlainBytes(const Asset& asset, Index index) {
   return view.byteOffset <= size && view.byteLength <= size - view.byteOffset;
 }
 
-bool hasPlainAccessors(const gltf::Document& document, const gltf::Primitive& primitive, const std::string& place) {
+bool hasPlainAccessors(const gltf::Document& document, const gltf::Primitive& primitive, const std::string& location) {
   bool plain = true;
   const auto look = [&](std::optional<Index> accessor, std::string_view name) {
-    requireElement(accessor, document.accessors.size(), [&] { return fmt::format("{}.{}", place, name); });
+    requireElement(accessor, document.accessors.size(), [&] { return fmt::format("{}.{}", location, name); });
     plain = plain && (!accessor || document.accessors[*accessor].bufferView);
   };
   look(primitive.indices, "indices");
-  const std::string path = fmt::format("{}.extensions.{}", place, kDraco);
+  const std::string path = fmt::format("{}.extensions.{}", location, kDraco);
   JsonView(extensionOf(primitive, kDraco), path)
       .object("attributes")
       .forEachMember([&](std::string_view name, const JsonView&) {
@@ -73,8 +73,8 @@ void takePlainData(Asset& asset, Decoded& decoded) {
     std::vector<gltf::Primitive>& primitives = document.meshes[m].primitives;
     for (std::size_t p = 0; p < primitives.size(); ++p) {
       if (extensionOf(primitives[p], kDraco) == nullptr) continue;
-      const std::string place = fmt::format("meshes[{}].primitives[{}]", m, p);
-      if (hasPlainAccessors(document, primitives[p], place)) eraseExtension(primitives[p], kDraco);
+      const std::string location = fmt::format("meshes[{}].primitives[{}]", m, p);
+      if (hasPlainAccessors(document, primitives[p], location)) eraseExtension(primitives[p], kDraco);
     }
   }
 }

@@ -32,20 +32,20 @@ constexpr std::string_view kDracoMagic = "DRACO";
 constexpr std::size_t kDracoMajor = 5, kDracoMinor = 6, kDracoGeometry = 7, kDracoHeaderSize = 11;  // bytes
 constexpr std::uint8_t kTriangularMesh = 1;
 
-[[noreturn]] void failBroken(const std::string& place) {
-  failAt(place, "its Draco data are broken or do not hold what the accessors say");
+[[noreturn]] void failBroken(const std::string& location) {
+  failAt(location, "its Draco data are broken or do not hold what the accessors say");
 }
 
 // glTF allows triangle meshes of one version of the bitstream.
-void checkHeader(ByteSpan bytes, const std::string& place) {
+void checkHeader(ByteSpan bytes, const std::string& location) {
   if (bytes.size() < kDracoHeaderSize || std::memcmp(bytes.data(), kDracoMagic.data(), kDracoMagic.size()) != 0)
-    failBroken(place);
-  if (bytes[kDracoGeometry] != kTriangularMesh) failAt(place, "its Draco data are not a mesh");
+    failBroken(location);
+  if (bytes[kDracoGeometry] != kTriangularMesh) failAt(location, "its Draco data are not a mesh");
   if (bytes[kDracoMajor] != 2 || bytes[kDracoMinor] != 2) {
     throw Error(
         ErrorCode::kUnsupported,
-        fmt::format("is Draco of version {}.{}, glTF holds version 2.2", bytes[kDracoMajor], bytes[kDracoMinor]), place,
-        "export the model again");
+        fmt::format("is Draco of version {}.{}, glTF holds version 2.2", bytes[kDracoMajor], bytes[kDracoMinor]),
+        location, "export the model again");
   }
 }
 
@@ -58,15 +58,15 @@ struct Piece {
 };
 
 template <typename T>
-void copyIndices(const DracoMesh& mesh, const std::string& place, Piece& piece) {
+void copyIndices(const DracoMesh& mesh, const std::string& location, Piece& piece) {
   if (mesh.points() > 0 && mesh.points() - 1 > std::numeric_limits<T>::max()) {
-    failAt(place, "has more vertices than its indices can count");
+    failAt(location, "has more vertices than its indices can count");
   }
   std::vector<std::uint32_t> points(3 * mesh.faces());
   mesh.copyFaces(points.data());
   std::uint8_t* out = piece.bytes.data();
   for (const std::uint32_t point : points) {
-    if (point >= mesh.points()) failBroken(place);
+    if (point >= mesh.points()) failBroken(location);
     const T value = static_cast<T>(point);
     std::memcpy(out, &value, sizeof(T));
     out += sizeof(T);
@@ -77,19 +77,19 @@ class DracoReader {
  public:
   DracoReader(Asset& asset, DecodeBudget& budget) : asset_(asset), budget_(budget) {}
 
-  void readPrimitive(const gltf::Primitive& primitive, const std::string& place) {
-    const std::string path = fmt::format("{}.extensions.{}", place, kDraco);
+  void readPrimitive(const gltf::Primitive& primitive, const std::string& location) {
+    const std::string path = fmt::format("{}.extensions.{}", location, kDraco);
     const JsonView extension(extensionOf(primitive, kDraco), path);
     const std::vector<gltf::Accessor>& accessors = asset_.document.accessors;
     const Index view = extension.requireIndex("bufferView", asset_.document.bufferViews.size());
-    if (!primitive.indices) failAt(place + ".indices", "is missing");
+    if (!primitive.indices) failAt(location + ".indices", "is missing");
     const Index indices = *primitive.indices;
-    requireElement(indices, accessors.size(), [&] { return place + ".indices"; });
+    requireElement(indices, accessors.size(), [&] { return location + ".indices"; });
 
     std::map<Index, int> attributes;  // accessor -> Draco's unique id
     std::vector<Index> weights;
     extension.object("attributes").forEachMember([&](std::string_view name, const JsonView& id) {
-      const auto attribute = [&] { return fmt::format("{}.attributes.{}", place, name); };
+      const auto attribute = [&] { return fmt::format("{}.attributes.{}", location, name); };
       const std::optional<Index> accessor = primitive.attributes.find(name);
       if (!accessor) failAt(attribute(), "is missing");
       requireElement(accessor, accessors.size(), attribute);
@@ -136,37 +136,37 @@ class DracoReader {
   }
 
   void addAttribute(const DracoMesh& mesh, Index view, Index accessor, int id) {
-    const std::string place = accessorPlace(accessor);
+    const std::string location = accessorLocation(accessor);
     const AccessorLayout layout = shapeOf(accessor);
     const std::optional<Index> components = mesh.components(id);
-    if (components != layout.info.components || layout.info.count != mesh.points()) failBroken(place);
+    if (components != layout.info.components || layout.info.count != mesh.points()) failBroken(location);
     // Vertex attributes stand at multiples of four bytes.
     Piece piece{view, id, layout.info.count, (layout.elementSize + 3) / 4 * 4, {}};
-    allocate(piece, place);
+    allocate(piece, location);
     Bytes packed(piece.count * layout.elementSize);
-    if (!mesh.copyValues(id, layout.info.type, packed.data())) failBroken(place);
+    if (!mesh.copyValues(id, layout.info.type, packed.data())) failBroken(location);
     for (std::size_t i = 0; i < piece.count; ++i) {
       std::memcpy(&piece.bytes[i * piece.stride], &packed[i * layout.elementSize], layout.elementSize);
     }
-    store(accessor, std::move(piece), place);
+    store(accessor, std::move(piece), location);
   }
 
   void addIndices(const DracoMesh& mesh, Index view, Index accessor) {
-    const std::string place = accessorPlace(accessor);
+    const std::string location = accessorLocation(accessor);
     const AccessorLayout layout = shapeOf(accessor);
-    if (layout.info.components != 1) failBroken(place);
+    if (layout.info.components != 1) failBroken(location);
     Piece piece{view, std::nullopt, 3 * mesh.faces(), layout.componentBytes, {}};
-    allocate(piece, place);
+    allocate(piece, location);
     if (layout.info.type == ComponentType::kU8) {
-      copyIndices<std::uint8_t>(mesh, place, piece);
+      copyIndices<std::uint8_t>(mesh, location, piece);
     } else if (layout.info.type == ComponentType::kU16) {
-      copyIndices<std::uint16_t>(mesh, place, piece);
+      copyIndices<std::uint16_t>(mesh, location, piece);
     } else if (layout.info.type == ComponentType::kU32) {
-      copyIndices<std::uint32_t>(mesh, place, piece);
+      copyIndices<std::uint32_t>(mesh, location, piece);
     } else {
-      failAt(place, "indices must be unsigned integers");
+      failAt(location, "indices must be unsigned integers");
     }
-    store(accessor, std::move(piece), place);
+    store(accessor, std::move(piece), location);
   }
 
   // The accessor's type and count. Its data are what is being decoded, so the count is held to what was.
@@ -201,14 +201,14 @@ class DracoReader {
     }
   }
 
-  void allocate(Piece& piece, const std::string& place) {
-    budget_.take(piece.count * piece.stride, place);
+  void allocate(Piece& piece, const std::string& location) {
+    budget_.take(piece.count * piece.stride, location);
     piece.bytes.resize(piece.count * piece.stride);
   }
 
-  void store(Index accessor, Piece&& piece, const std::string& place) {
+  void store(Index accessor, Piece&& piece, const std::string& location) {
     const auto [known, isNew] = pieces_.try_emplace(accessor, std::move(piece));
-    if (!isNew && known->second.bytes != piece.bytes) failAt(place, "is used for two differing Draco attributes");
+    if (!isNew && known->second.bytes != piece.bytes) failAt(location, "is used for two differing Draco attributes");
   }
 
   Asset& asset_;
@@ -231,7 +231,7 @@ void collectViewReferences(const Json& json, std::vector<bool>& used) {
 }
 
 // Puts the pieces in new buffer views. The views of compressed data that nothing refers to any more are used first.
-void placePieces(Asset& asset, const std::map<Index, Piece>& pieces) {
+void storePieces(Asset& asset, const std::map<Index, Piece>& pieces) {
   gltf::Document& document = asset.document;
   std::vector<bool> used(document.bufferViews.size(), false);
   collectViewReferences(gltf::jsonOf(document), used);
@@ -276,7 +276,7 @@ void decodeDraco(Asset& asset, DecodeBudget& budget, Decoded& decoded) {
     // Strips come out of Draco as single triangles.
     if (primitive->mode == gltf::kTriangleStrip) primitive->mode = gltf::kTriangles;
   }
-  placePieces(asset, reader.pieces());
+  storePieces(asset, reader.pieces());
 }
 
 }  // namespace limber

@@ -24,12 +24,12 @@ struct EncodedView {
 
 EncodedView readEncoded(const Asset& asset, Index index, const JsonView& extension) {
   const gltf::BufferView& view = asset.document.bufferViews[index];
-  const std::string place = fmt::format("bufferViews[{}]", index);
+  const std::string location = fmt::format("bufferViews[{}]", index);
   EncodedView encoded;
   encoded.view = index;
   encoded.target = view.buffer;
-  requireElement(view.buffer, asset.buffers.size(), [&] { return place + ".buffer"; });
-  if (!asset.buffers[encoded.target].bytes.empty()) failAt(place, "reaches beyond its buffer");
+  requireElement(view.buffer, asset.buffers.size(), [&] { return location + ".buffer"; });
+  if (!asset.buffers[encoded.target].bytes.empty()) failAt(location, "reaches beyond its buffer");
   encoded.source = extension.requireIndex("buffer", asset.buffers.size());
   const Bytes& source = asset.buffers[encoded.source].bytes;
   const std::size_t offset = extension.count("byteOffset").value_or(0);

@@ -266,9 +266,10 @@ struct DracoModel {
   explicit DracoModel(int method) {
     const int points = kSide * kSide;
     for (int i = 0; i < points; ++i) {
-      const float share = static_cast<float>(i % kSide) / 11;
-      positions.insert(positions.end(), {static_cast<float>(i % kSide), static_cast<float>(i / kSide), share * share});
-      weights.insert(weights.end(), {share, 1 - share, 0, 0});
+      const float fraction = static_cast<float>(i % kSide) / 11;
+      positions.insert(positions.end(),
+                       {static_cast<float>(i % kSide), static_cast<float>(i / kSide), fraction * fraction});
+      weights.insert(weights.end(), {fraction, 1 - fraction, 0, 0});
       joints.insert(joints.end(), {1, 0, 0, 0});
     }
     mesh.set_num_points(points);
@@ -357,10 +358,10 @@ TEST(Draco, DecodesBothMethods) {
     const std::vector<Index> joints = readIndices(asset, 2);
     EXPECT_EQ(trianglesOf(positions, readIndices(asset, 0)), trianglesOf(file.positions, gridIndices(file.mesh)));
     for (std::size_t v = 0; v < positions.size() / 3; ++v) {
-      const float share = positions[3 * v] / 11;
-      EXPECT_NEAR(positions[3 * v + 2], share * share, 2e-3);
+      const float fraction = positions[3 * v] / 11;
+      EXPECT_NEAR(positions[3 * v + 2], fraction * fraction, 2e-3);
       EXPECT_EQ(joints[4 * v], 1u);
-      EXPECT_NEAR(weights[4 * v], share, 1e-2);
+      EXPECT_NEAR(weights[4 * v], fraction, 1e-2);
       EXPECT_NEAR(weights[4 * v] + weights[4 * v + 1], 1, 1e-6);  // rounded apart by Draco, made whole again
     }
     EXPECT_THAT(readFloats(asset, 4), ElementsAre(1, 2, 3));

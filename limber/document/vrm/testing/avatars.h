@@ -27,10 +27,10 @@ inline Asset avatarOf(const Motion& motion) {
   asset.name = "hero.glb";
   std::vector<float> positions, weights;
   std::vector<std::uint8_t> joints;
-  const std::vector<Vec3> places = restPositions(motion.skeleton);
+  const std::vector<Vec3> points = restPositions(motion.skeleton);
   for (Index j = 0; j < motion.skeleton.jointCount(); ++j) {
     for (const Vec3& corner : {Vec3(0, 0, 0), Vec3(0.01, 0, 0), Vec3(0, 0.01, 0)}) {
-      for (int i = 0; i < 3; ++i) positions.push_back(static_cast<float>((places[j] + corner)[i]));
+      for (int i = 0; i < 3; ++i) positions.push_back(static_cast<float>((points[j] + corner)[i]));
       joints.insert(joints.end(), {static_cast<std::uint8_t>(j), 0, 0, 0});
       weights.insert(weights.end(), {1, 0, 0, 0});
     }
@@ -72,7 +72,7 @@ inline void nameShapes(Asset& asset, Index mesh, const std::vector<std::string>&
 }
 
 // Where the node of that bone stands, as a VRM's humanoid names it.
-inline Vec3 bonePlace(const Asset& asset, const std::string& bone) {
+inline Vec3 bonePosition(const Asset& asset, const std::string& bone) {
   const Json& bones = extensionOf(asset.document, "VRMC_vrm")->at("humanoid").at("humanBones");
   return readSceneGraph(asset.document).world[bones.at(bone).at("node").get<Index>()].translation();
 }

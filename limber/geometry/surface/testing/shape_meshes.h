@@ -165,13 +165,13 @@ inline TriMesh jittered(TriMesh mesh, float amount, std::uint64_t seed = 1) {
 // Vertices in another order.
 inline TriMesh shuffled(const TriMesh& mesh, std::uint64_t seed = 1) {
   TestRandom random(seed);
-  std::vector<Index> place(mesh.positions.size());
-  for (Index i = 0; i < place.size(); ++i) place[i] = i;
-  for (Index i = mesh.vertexCount(); i > 1; --i) std::swap(place[i - 1], place[random.below(i)]);
+  std::vector<Index> indices(mesh.positions.size());
+  for (Index i = 0; i < indices.size(); ++i) indices[i] = i;
+  for (Index i = mesh.vertexCount(); i > 1; --i) std::swap(indices[i - 1], indices[random.below(i)]);
   TriMesh result = mesh;
-  for (Index i = 0; i < place.size(); ++i) result.positions[place[i]] = mesh.positions[i];
+  for (Index i = 0; i < indices.size(); ++i) result.positions[indices[i]] = mesh.positions[i];
   for (Triangle& t : result.triangles) {
-    for (Index& v : t) v = place[v];
+    for (Index& v : t) v = indices[v];
   }
   return result;
 }
@@ -202,9 +202,9 @@ inline std::vector<NamedMesh> meshCatalogue() {
   TriMesh confetti;
   TestRandom random(3);
   for (int i = 0; i < 60; ++i) {
-    const auto place = [&] { return static_cast<float>(10 * random.unit()); };
+    const auto positionOf = [&] { return static_cast<float>(10 * random.unit()); };
     confetti = joined(confetti, jittered({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}, 0.3f, 100 + i),
-                      {place(), place(), place()});
+                      {positionOf(), positionOf(), positionOf()});
   }
   TriMesh fan;  // one vertex with 200 neighbours
   fan.positions.push_back({0, 0, 0.3f});

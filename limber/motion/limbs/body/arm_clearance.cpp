@@ -14,9 +14,9 @@ namespace limber {
 namespace {
 
 // By the judge on half of the shared motions: surface inside the body 1.04 -> 0.89 times that of `aligned`.
-constexpr double kGivesWay = 0.01;  // hip heights; 0.003 to 0.03; depth over which the swing begins without a kink
-constexpr double kMostSwing = 0.7;  // radians; 0.3 to 1.2; of one bone
-constexpr double kFlesh = 0.7;      // fraction of an arm's mean radius; 0 to 1; that has to stay outside
+constexpr double kYieldDistance = 0.01;  // hip heights; 0.003 to 0.03; depth over which the swing begins without a kink
+constexpr double kMaxSwing = 0.7;        // radians; 0.3 to 1.2; of one bone
+constexpr double kFlesh = 0.7;           // fraction of an arm's mean radius; 0 to 1; that has to stay outside
 
 bool isBody(PartKind kind) {
   return kind == PartKind::kTrunk || kind == PartKind::kNeck || kind == PartKind::kHead || kind == PartKind::kLeg;
@@ -24,7 +24,8 @@ bool isBody(PartKind kind) {
 
 }  // namespace
 
-ArmClearance::ArmClearance(const RetargetSetup& setup, const RootPlacer& root) : setup_(setup), reach_(setup, root) {
+ArmClearance::ArmClearance(const RetargetSetup& setup, const RootPositioner& root)
+    : setup_(setup), reach_(setup, root) {
   if (!setup.options.skin || !setup.person || setup.sameBody) return;
   const Anatomy& anatomy = setup.targetReading.anatomy();
   std::vector<double> thick(setup.target->jointCount(), 0.0);
@@ -44,12 +45,12 @@ ArmClearance::ArmClearance(const RetargetSetup& setup, const RootPlacer& root) :
     arm.limb = *limb;
     for (std::size_t i = 0; i < kAlong.size(); ++i) {
       arm.thick[i] = kFlesh * thick[kAlong[i] > 1 ? limb->end : limb->lower];
-      arm.atRest[i] = std::max(depthAt(placeOf(*limb, kAlong[i], rest), rest).depth + arm.thick[i], 0.0);
+      arm.atRest[i] = std::max(depthAt(positionOf(*limb, kAlong[i], rest), rest).depth + arm.thick[i], 0.0);
     }
   }
 }
 
-Vec3 ArmClearance::placeOf(const Limb& limb, double along, const BodyFrame& frame) {
+Vec3 ArmClearance::positionOf(const Limb& limb, double along, const BodyFrame& frame) {
   const Vec3& elbow = frame.positions[limb.lower];
   return elbow + along * (frame.positions[limb.end] - elbow);
 }
@@ -63,31 +64,31 @@ SkinTube::Depth ArmClearance::depthAt(const Vec3& point, const BodyFrame& frame)
   return deepest;
 }
 
-Vec3 ArmClearance::wayOutAt(const Arm& arm, std::size_t probe, const BodyFrame& frame) const {
-  const SkinTube::Depth found = depthAt(placeOf(arm.limb, kAlong[probe], frame), frame);
+Vec3 ArmClearance::displacementOutAt(const Arm& arm, std::size_t probe, const BodyFrame& frame) const {
+  const SkinTube::Depth found = depthAt(positionOf(arm.limb, kAlong[probe], frame), frame);
   const double depth = found.depth + arm.thick[probe] - arm.atRest[probe];
   if (!(depth > 0)) return Vec3::Zero();
-  return depth * depth / (depth + kGivesWay * setup_.targetHipHeight) * found.out;
+  return depth * depth / (depth + kYieldDistance * setup_.targetHipHeight) * found.out;
 }
 
-Vec3 ArmClearance::wayOut(std::size_t arm, Bone bone, const BodyFrame& frame) const {
-  if (bone == Bone::kUpper) return wayOutAt(arms_[arm], 0, frame);
+Vec3 ArmClearance::displacementOut(std::size_t arm, Bone bone, const BodyFrame& frame) const {
+  if (bone == Bone::kUpper) return displacementOutAt(arms_[arm], 0, frame);
   Vec3 most = Vec3::Zero();
   for (std::size_t i = 1; i < kAlong.size(); ++i) {
-    const Vec3 needed = wayOutAt(arms_[arm], i, frame) / kAlong[i];
+    const Vec3 needed = displacementOutAt(arms_[arm], i, frame) / kAlong[i];
     if (needed.squaredNorm() > most.squaredNorm()) most = needed;
   }
   return most;
 }
 
-void ArmClearance::swing(std::size_t arm, Bone bone, const Vec3& way, BodyFrame& frame, Pose& target) const {
+void ArmClearance::swing(std::size_t arm, Bone bone, const Vec3& displacement, BodyFrame& frame, Pose& target) const {
   const Limb& limb = arms_[arm].limb;
   const auto [upper, lower] =
       bone == Bone::kUpper ? std::pair(limb.upper, limb.lower) : std::pair(limb.lower, limb.end);
   const Vec3 from = frame.positions[lower] - frame.positions[upper];
-  if (way.norm() < 1e-9 * from.norm()) return;
-  Eigen::AngleAxisd turn(shortestRotation(from, from + way));
-  turn.angle() = kMostSwing * std::tanh(turn.angle() / kMostSwing);
+  if (displacement.norm() < 1e-9 * from.norm()) return;
+  Eigen::AngleAxisd turn(shortestRotation(from, from + displacement));
+  turn.angle() = kMaxSwing * std::tanh(turn.angle() / kMaxSwing);
   Limb turned;
   turned.end = upper;
   reach_.turnEnd(turned, Quat(turn) * frame.rotations[upper], frame, target);

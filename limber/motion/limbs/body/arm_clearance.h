@@ -18,13 +18,13 @@ class ArmClearance {
 
   // No arms without a skin, of others than people, or where a body gets its own motion (RetargetSetup::sameBody). Both
   // must outlive this.
-  ArmClearance(const RetargetSetup& setup, const RootPlacer& root);
+  ArmClearance(const RetargetSetup& setup, const RootPositioner& root);
 
   std::size_t arms() const { return arms_.size(); }
   // How the lower end of the bone would have to move, metres. A few microseconds.
-  Vec3 wayOut(std::size_t arm, Bone bone, const BodyFrame& frame) const;
+  Vec3 displacementOut(std::size_t arm, Bone bone, const BodyFrame& frame) const;
   // Turns the bone so. `frame` are the globals of `target`; both are brought up to date.
-  void swing(std::size_t arm, Bone bone, const Vec3& way, BodyFrame& frame, Pose& target) const;
+  void swing(std::size_t arm, Bone bone, const Vec3& displacement, BodyFrame& frame, Pose& target) const;
 
  private:
   // Forearm lengths from the elbow; 0 to 1.5 (a hand's middle is at 1.3); where depths are probed; set by hand.
@@ -37,8 +37,8 @@ class ArmClearance {
 
   SkinTube::Depth depthAt(const Vec3& point, const BodyFrame& frame) const;
   // The way on which the arm there is out again; nothing where it is out.
-  Vec3 wayOutAt(const Arm& arm, std::size_t probe, const BodyFrame& frame) const;
-  static Vec3 placeOf(const Limb& limb, double along, const BodyFrame& frame);
+  Vec3 displacementOutAt(const Arm& arm, std::size_t probe, const BodyFrame& frame) const;
+  static Vec3 positionOf(const Limb& limb, double along, const BodyFrame& frame);
 
   const RetargetSetup& setup_;
   LimbReach reach_;

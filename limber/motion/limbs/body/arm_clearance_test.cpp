@@ -15,7 +15,7 @@ using Bone = ArmClearance::Bone;
 
 // Round pillars about vertical lines that pass through joints.
 struct Pillars {
-  std::vector<Vec3f> places;
+  std::vector<Vec3f> positions;
   SkinWeights weights{1, {}, {}};
 
   void add(Index joint, const Vec3& at, double down, double up, double radius) {
@@ -23,7 +23,7 @@ struct Pillars {
     for (int h = 0; h < kHeights; ++h) {
       for (int i = 0; i < kAround; ++i) {
         const double angle = 2 * kPi * i / kAround, height = -down + (up + down) * h / (kHeights - 1);
-        places.push_back((at + Vec3(radius * std::cos(angle), height, radius * std::sin(angle))).cast<float>());
+        positions.push_back((at + Vec3(radius * std::cos(angle), height, radius * std::sin(angle))).cast<float>());
         weights.joints.push_back(joint);
         weights.weights.push_back(1);
       }
@@ -40,7 +40,8 @@ TEST(SkinTube, TellsHowDeepAPointIsAndTheWayOut) {
   const Vec3 hips = frame.positions[joint];
   Pillars pillars;
   pillars.add(joint, hips, 0.1, 0.5, 0.3);
-  const std::optional<SkinTube> tube = SkinTube::about(joint, *makeBodySkin(person, pillars.places, pillars.weights));
+  const std::optional<SkinTube> tube =
+      SkinTube::about(joint, *makeBodySkin(person, pillars.positions, pillars.weights));
   ASSERT_TRUE(tube);
   EXPECT_NEAR(tube->thickness(), 0.3, 0.01);
   for (const double angle : {0.1, 2.0, 4.5}) {
@@ -65,7 +66,7 @@ class ArmClearanceTest : public ::testing::Test {
     if (radius > 0) pillars.add(hips, rest[hips], 0.1, 0.6, radius);
     RetargetOptions options;
     if (radius > 0) {
-      options.skin = makeBodySkin(person_, pillars.places, pillars.weights);
+      options.skin = makeBodySkin(person_, pillars.positions, pillars.weights);
     }
     setup_.emplace(source, person_, matchSkeletons(source, person_), options);
     root_.emplace(*setup_);
@@ -87,10 +88,10 @@ class ArmClearanceTest : public ::testing::Test {
   }
 
   void expectOutAfterSwings(const ArmClearance& clearance, std::size_t arm, Bone bone) {
-    const double before = clearance.wayOut(arm, bone, frame_).norm();
+    const double before = clearance.displacementOut(arm, bone, frame_).norm();
     EXPECT_GT(before, 0.02);
-    for (int i = 0; i < 4; ++i) clearance.swing(arm, bone, clearance.wayOut(arm, bone, frame_), frame_, pose_);
-    EXPECT_LT(clearance.wayOut(arm, bone, frame_).norm(), 0.3 * before);
+    for (int i = 0; i < 4; ++i) clearance.swing(arm, bone, clearance.displacementOut(arm, bone, frame_), frame_, pose_);
+    EXPECT_LT(clearance.displacementOut(arm, bone, frame_).norm(), 0.3 * before);
     BodyFrame anew;
     setup_->targetKinematics.globals(pose_, anew);
     const Index hand = person_.find("leftHand").value();
@@ -99,7 +100,7 @@ class ArmClearanceTest : public ::testing::Test {
 
   const Skeleton person_ = practiceHumanoid(), shortArmed_ = shortArmed();  // motions are of the latter
   std::optional<RetargetSetup> setup_;
-  std::optional<RootPlacer> root_;
+  std::optional<RootPositioner> root_;
   Pose pose_ = restPose(person_);
   BodyFrame frame_;
 };
@@ -115,14 +116,15 @@ TEST_F(ArmClearanceTest, TakesForearmsOutThatAreBentIntoIt) {
   const ArmClearance clearance = clearanceBy(0.4);
   pose_.locals[person_.find("leftLowerArm").value()].rotation = turn(Vec3::UnitY(), -150);
   setup_->targetKinematics.globals(pose_, frame_);
-  EXPECT_EQ(clearance.wayOut(0, Bone::kUpper, frame_), Vec3(Vec3::Zero()));
+  EXPECT_EQ(clearance.displacementOut(0, Bone::kUpper, frame_), Vec3(Vec3::Zero()));
   expectOutAfterSwings(clearance, 0, Bone::kForearm);
 }
 
 TEST_F(ArmClearanceTest, LeavesArmsThatAreOutside) {
   const ArmClearance thin = clearanceBy(0.08);
   hang();
-  for (const Bone bone : {Bone::kUpper, Bone::kForearm}) EXPECT_EQ(thin.wayOut(0, bone, frame_), Vec3(Vec3::Zero()));
+  for (const Bone bone : {Bone::kUpper, Bone::kForearm})
+    EXPECT_EQ(thin.displacementOut(0, bone, frame_), Vec3(Vec3::Zero()));
   EXPECT_EQ(clearanceBy(0).arms(), 0u) << "nothing is known of its skin";
   EXPECT_EQ(clearanceBy(0.45, person_).arms(), 0u) << "a motion of its own is right as it is";
 }
@@ -131,7 +133,7 @@ TEST_F(ArmClearanceTest, WhatIsInsideAtRestMayBe) {
   const ArmClearance clearance = clearanceBy(0.45);
   setup_->targetKinematics.globals(setup_->targetRest, frame_);
   for (const Bone bone : {Bone::kUpper, Bone::kForearm}) {
-    EXPECT_EQ(clearance.wayOut(0, bone, frame_), Vec3(Vec3::Zero()));
+    EXPECT_EQ(clearance.displacementOut(0, bone, frame_), Vec3(Vec3::Zero()));
   }
 }
 

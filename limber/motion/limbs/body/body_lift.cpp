@@ -13,7 +13,7 @@ namespace {
 // In hip heights of the target; set by hand on a dog that falls over as a horse (it lay 13 cm too deep before).
 constexpr double kLies = 0.2;   // 0.1 to 0.3; a joint lower than that stays as high as the source's, scaled
 constexpr double kSoft = 0.04;  // 0.02 to 0.1; over which that begins, and joints take over, without a kink
-constexpr double kMost = 2;     // 1 to 20; lacks above it count alike, so that exp() stays finite
+constexpr double kMax = 2;      // 1 to 20; lacks above it count alike, so that exp() stays finite
 
 }  // namespace
 
@@ -37,7 +37,7 @@ double BodyLift::operator()(const BodyFrame& source, const BodyFrame& target) co
     const double wanted = kLies - softPositive(kLies - over, kSoft);
     const double is = (target.positions[pair.target].y() - setup_.targetGround) / height;
     const double lacks = softPositive(wanted - is, kSoft);
-    const double weight = std::exp(std::min(lacks, kMost) / kSoft);
+    const double weight = std::exp(std::min(lacks, kMax) / kSoft);
     sum += weight * lacks;
     weights += weight;
   }

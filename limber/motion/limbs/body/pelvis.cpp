@@ -14,10 +14,10 @@ namespace {
 constexpr double kWidthPower = 1.5;
 
 // In hip heights of the target.
-constexpr double kMostShift = 0.3;  // 0.15 to 0.5; vertical offset of the pelvis; set by hand
+constexpr double kMaxShift = 0.3;  // 0.15 to 0.5; vertical offset of the pelvis; set by hand
 // 0.05 to 0.3; by which feet that cannot reach pull down hips or shoulders, before they lift; set on a fox's gallop on
 // an alpaca, which reared without it.
-constexpr double kMostAtEnd = 0.15;
+constexpr double kMaxAtEnd = 0.15;
 // Soft limits of sinking: 0.005 to 0.03, before legs are stretched; 0.002 to 0.01, displacement of a foot that counts
 // half (0.01 gave a jerk of 1.14 times the source's). By jerk on the shared people.
 constexpr double kSoftStretch = 0.015, kSoftChange = 0.004;
@@ -27,7 +27,7 @@ constexpr double kSoftFar = 0.04;
 // 0.05 to 0.2; by which foot-driven legs count e times as much if they want the body lower; set by hand on farm
 // animals.
 constexpr double kSoftBend = 0.1;
-constexpr double kStandsBelow = 0.45;  // Leg::lift; 0.3 (before) to kLifted; their bend no longer counts; set by hand
+constexpr double kStanceBelow = 0.45;  // Leg::lift; 0.3 (before) to kLifted; their bend no longer counts; set by hand
 constexpr double kSoftFold = 0.02;     // 0.01 to 0.05; before a leg folds wholly; set by hand
 
 // Squared sine of a leg's slope; 0.1 to 0.5; of a person's leg, below which sinking helps it less; set on a dinosaur's
@@ -46,7 +46,7 @@ constexpr double kKneesFold = 0.75;
 constexpr double kClearlyBelow = 0.5;
 // Stiffness against rotation by planted legs, leg lengths: 0.05 to 0.5 both, more on one leg; its bound, radians: 0.4
 // to 1.2. By jerk on toys with wide hips (3.3 -> 1.6 times the source's at worst).
-constexpr double kStiffOnTwo = 0.15, kStiffOnOne = 0.3, kMostTurn = 0.8;
+constexpr double kStiffOnTwo = 0.15, kStiffOnOne = 0.3, kMaxTurn = 0.8;
 
 Vec3 level(const Vec3& v) {
   return {v.x(), 0, v.z()};
@@ -54,8 +54,8 @@ Vec3 level(const Vec3& v) {
 
 // x where it is small, at most `most` either way.
 double saturated(double x, double most) {
-  const double share = x / most;
-  return x / std::sqrt(std::sqrt(1 + share * share * share * share));
+  const double fraction = x / most;
+  return x / std::sqrt(std::sqrt(1 + fraction * fraction * fraction * fraction));
 }
 
 // Share to which the body makes up for what the leg lacks to reach its goal.
@@ -69,7 +69,8 @@ double hipWidth(const NeutralPose& neutral, Index left, Index right) {
 
 }  // namespace
 
-Pelvis::Pelvis(const RetargetSetup& setup, const RootPlacer& root) : setup_(setup), root_(root), tilt_(setup, root) {
+Pelvis::Pelvis(const RetargetSetup& setup, const RootPositioner& root)
+    : setup_(setup), root_(root), tilt_(setup, root) {
   if (!setup.person) return;
   const JointMatch &left = *setup.map.find(body_part::leg(Side::kLeft, Segment::kUpper)),
                    &right = *setup.map.find(body_part::leg(Side::kRight, Segment::kUpper));
@@ -88,8 +89,9 @@ void Pelvis::levelHips(Pose& target, BodyFrame& frame) const {
   const Vec3 line = (frame.positions[leftHip_] - frame.positions[rightHip_]).normalized();
   Vec3 levelled = level(line);
   if (trunk_) {
-    const Vec3 stands = (neutral.positions[leftHip_] - neutral.positions[rightHip_]).normalized();
-    levelled = 0.5 * (levelled + level(frame.rotations[*trunk_] * neutral.rotations[*trunk_].conjugate() * stands));
+    const Vec3 restDirection = (neutral.positions[leftHip_] - neutral.positions[rightHip_]).normalized();
+    levelled =
+        0.5 * (levelled + level(frame.rotations[*trunk_] * neutral.rotations[*trunk_].conjugate() * restDirection));
   }
   levelled += (1 - levelled.norm()) * line;
   const Vec3 wanted = (hipTurns_ * line + (1 - hipTurns_) * levelled).normalized();
@@ -114,11 +116,11 @@ Pelvis::Move Pelvis::moveOfEnds(std::span<const Leg> hind, std::span<const Leg> 
   return {TrunkTilt::turnFor(shiftFor(fore, frame, none, foreRise - apart) - up, tilt_.trunkOf(frame)), up};
 }
 
-Vec3 Pelvis::hipWay(const Move& move, const Leg& leg, const BodyFrame& frame) const {
-  const Vec3 way = Vec3(0, move.up, 0);
-  if (move.turn.w() == 1) return way;
+Vec3 Pelvis::hipDisplacement(const Move& move, const Leg& leg, const BodyFrame& frame) const {
+  const Vec3 displacement = Vec3(0, move.up, 0);
+  if (move.turn.w() == 1) return displacement;
   const Vec3 fromMiddle = frame.positions[leg.upper] - root_.middleOfHips(frame);
-  return way + move.turn * fromMiddle - fromMiddle;
+  return displacement + move.turn * fromMiddle - fromMiddle;
 }
 
 void Pelvis::apply(const Move& move, Pose& target, BodyFrame& frame) const {
@@ -142,7 +144,7 @@ Quat Pelvis::turnFor(std::span<const Leg> legs, const BodyFrame& frame) const {
   Vec3 turn = 0.5 * both / (toHip.squaredNorm() + onTwo * onTwo) * toHip.cross(lackLeft - lackRight);
   const Vec3 alone = (left.contact.strength - both) * lackLeft - (right.contact.strength - both) * lackRight;
   turn.y() += toHip.cross(alone).y() / (toHip.squaredNorm() + onOne * onOne);
-  return fromRotationVector(turn / std::sqrt(1 + turn.squaredNorm() / (kMostTurn * kMostTurn)));
+  return fromRotationVector(turn / std::sqrt(1 + turn.squaredNorm() / (kMaxTurn * kMaxTurn)));
 }
 
 // By the pelvis rising, every leg that is planted would be as long as its joint angles make it: the mean of those ways.
@@ -151,14 +153,15 @@ double Pelvis::riseFor(std::span<const Leg> legs, const BodyFrame& frame, const 
   double sum = 0, weights = 0;
   for (const Leg& leg : legs) {
     if (leg.footDriven) continue;
-    const Vec3 hip = frame.positions[leg.upper], way = leg.goal - hip - hipWay({turn, 0}, leg, frame);
-    const double length = (frame.positions[leg.end] - hip).norm(), across = std::hypot(way.x(), way.z());
-    if (way.y() >= 0 || across >= length) continue;
+    const Vec3 hip = frame.positions[leg.upper], displacement = leg.goal - hip - hipDisplacement({turn, 0}, leg, frame);
+    const double length = (frame.positions[leg.end] - hip).norm(),
+                 across = std::hypot(displacement.x(), displacement.z());
+    if (displacement.y() >= 0 || across >= length) continue;
     const double weight = leg.contact.strength * (1 - across * across / (length * length));
-    sum += weight * (way.y() + std::sqrt(length * length - across * across));
+    sum += weight * (displacement.y() + std::sqrt(length * length - across * across));
     weights += weight;
   }
-  const double most = kMostShift * setup_.targetHipHeight;
+  const double most = kMaxShift * setup_.targetHipHeight;
   return std::clamp(sum / std::max(weights, 1.0) + footDrivenOffset(legs, frame), -most, most);
 }
 
@@ -169,13 +172,13 @@ double Pelvis::footDrivenOffset(std::span<const Leg> legs, const BodyFrame& fram
   double sum = kStay, weights = kStay;
   for (const Leg& leg : legs) {
     if (!leg.footDriven) continue;
-    const Vec3 way = leg.goal - frame.positions[leg.upper];
-    const double reach = leg.bentReach, across = std::hypot(way.x(), way.z());
+    const Vec3 displacement = leg.goal - frame.positions[leg.upper];
+    const double reach = leg.bentReach, across = std::hypot(displacement.x(), displacement.z());
     if (across >= reach) continue;
-    const double weight = leg.upright * smoothStep(1 - leg.lift / kStandsBelow) *
+    const double weight = leg.upright * smoothStep(1 - leg.lift / kStanceBelow) *
                           (1 - across * across / (reach * reach)) * steepness(leg, across, reach);
-    const double up = way.y() + std::sqrt(reach * reach - across * across);
-    sum += weight * std::exp(-saturated(up, kMostShift * setup_.targetHipHeight) / soft);
+    const double up = displacement.y() + std::sqrt(reach * reach - across * across);
+    sum += weight * std::exp(-saturated(up, kMaxShift * setup_.targetHipHeight) / soft);
     weights += weight;
   }
   return -soft * std::log(sum / weights);
@@ -189,7 +192,7 @@ double Pelvis::steepness(const Leg& leg, double across, double reach) const {
 
 double Pelvis::changeOf(const Leg& leg, const BodyFrame& frame, const Quat& turn) const {
   if (leg.footDriven) return 1;
-  const double change = (leg.goal - frame.positions[leg.end] - hipWay({turn, 0}, leg, frame)).norm();
+  const double change = (leg.goal - frame.positions[leg.end] - hipDisplacement({turn, 0}, leg, frame)).norm();
   return change / (change + kSoftChange * setup_.targetHipHeight);
 }
 
@@ -199,20 +202,20 @@ double Pelvis::shiftFor(std::span<const Leg> legs, const BodyFrame& frame, const
   const double soft = (byAngles ? kSoftStretch : kSoftFar) * height;
   double sum = 0;
   for (const Leg& leg : legs) {
-    const Vec3 hipGoes = hipWay({turn, 0}, leg, frame);
-    const Vec3 way = leg.goal - frame.positions[leg.upper] - hipGoes - Vec3(0, rise, 0);
-    if (way.y() >= 0) continue;
-    const double length = kMaxStretch * leg.length, across = std::hypot(way.x(), way.z());
+    const Vec3 hipGoes = hipDisplacement({turn, 0}, leg, frame);
+    const Vec3 displacement = leg.goal - frame.positions[leg.upper] - hipGoes - Vec3(0, rise, 0);
+    if (displacement.y() >= 0) continue;
+    const double length = kMaxStretch * leg.length, across = std::hypot(displacement.x(), displacement.z());
     const double down = std::sqrt(std::max(length * length - across * across, 0.0));
     const double needed =
-        followed(leg) * steepness(leg, across, length) * softPositive(-way.y() - down, soft * leg.changed);
+        followed(leg) * steepness(leg, across, length) * softPositive(-displacement.y() - down, soft * leg.changed);
     sum += needed * needed * needed * needed;
   }
   // The most that a leg asks for, but without a kink where another takes over.
   const double most = std::sqrt(std::sqrt(sum));
   const double down = byAngles || (!setup_.person && !tilt_.tilts())
-                          ? std::min(most, kMostShift * height)
-                          : saturated(most, (tilt_.tilts() ? kMostAtEnd : kMostShift) * height);
+                          ? std::min(most, kMaxShift * height)
+                          : saturated(most, (tilt_.tilts() ? kMaxAtEnd : kMaxShift) * height);
   const double shift = rise - down;
   return shift + raiseFor(legs, frame, shift);
 }
@@ -224,12 +227,12 @@ double Pelvis::shiftFor(std::span<const Leg> legs, const BodyFrame& frame, const
 double Pelvis::raiseFor(std::span<const Leg> legs, const BodyFrame& frame, double shift) const {
   double sum = 0;
   for (const Leg& leg : legs) {
-    const Vec3 way = leg.goal - frame.positions[leg.upper] - Vec3(0, shift, 0);
-    const Vec3 own = (leg.footDriven ? leg.place : frame.positions[leg.end]) - frame.positions[leg.upper];
+    const Vec3 displacement = leg.goal - frame.positions[leg.upper] - Vec3(0, shift, 0);
+    const Vec3 own = (leg.footDriven ? leg.position : frame.positions[leg.end]) - frame.positions[leg.upper];
     const double least = leg.footDriven ? leg.folded : std::min(kKneesFold * leg.folded, own.norm());
-    const double across = std::hypot(way.x(), way.z());
+    const double across = std::hypot(displacement.x(), displacement.z());
     if (leg.hock || across >= least || !(leg.footDriven || setup_.person)) continue;  // hocks fold as well
-    const double lacks = std::sqrt(least * least - across * across) + way.y();
+    const double lacks = std::sqrt(least * least - across * across) + displacement.y();
     const double below = smoothStep(-own.y() / (kClearlyBelow * least));
     const double needed = below * followed(leg) * softPositive(lacks, kSoftFold * setup_.targetHipHeight);
     sum += needed * needed * needed * needed;

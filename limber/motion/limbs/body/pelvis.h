@@ -13,7 +13,7 @@ namespace limber {
 class Pelvis {
  public:
   // Both must outlive this.
-  Pelvis(const RetargetSetup& setup, const RootPlacer& root);
+  Pelvis(const RetargetSetup& setup, const RootPositioner& root);
 
   // The line between people's hips leans out of the level, and turns against the trunk, the less the wider they are for
   // their height than the source's: hips as wide as a leg is long would else be swept much further than the source's,
@@ -38,7 +38,7 @@ class Pelvis {
   // alone may be as straight as it is.
   double changeOf(const Leg& leg, const BodyFrame& frame, const Quat& turn = Quat::Identity()) const;
   // Of a leg's hip by that move, in the person's space.
-  Vec3 hipWay(const Move& move, const Leg& leg, const BodyFrame& frame) const;
+  Vec3 hipDisplacement(const Move& move, const Leg& leg, const BodyFrame& frame) const;
   void apply(const Move& move, Pose& target, BodyFrame& frame) const;
   const TrunkTilt& trunk() const { return tilt_; }
 
@@ -51,7 +51,7 @@ class Pelvis {
   double footDrivenOffset(std::span<const Leg> legs, const BodyFrame& frame) const;
 
   const RetargetSetup& setup_;
-  const RootPlacer& root_;
+  const RootPositioner& root_;
   TrunkTilt tilt_;
   double hipTurns_ = 1;  // share of the source's turns that wide hips take over
   Index leftHip_ = 0, rightHip_ = 0;

@@ -25,16 +25,16 @@ Skeleton wideHips(double times) {
 // Each leg on a joint of its own, as CMU's skeletons have them.
 Skeleton withHipJoints(const Skeleton& person) {
   Skeleton jointed;
-  std::vector<Index> places;
+  std::vector<Index> indices;
   for (Joint joint : person.joints) {
-    if (joint.parent) joint.parent = places[*joint.parent];
+    if (joint.parent) joint.parent = indices[*joint.parent];
     if (joint.name == "leftUpperLeg" || joint.name == "rightUpperLeg") {
       Joint& between = jointed.joints.emplace_back();
       between.name = joint.name.substr(0, joint.name.find('U')) + "HipJoint";
       between.parent = joint.parent;
       joint.parent = jointed.jointCount() - 1;
     }
-    places.push_back(jointed.jointCount());
+    indices.push_back(jointed.jointCount());
     jointed.joints.push_back(joint);
   }
   return jointed;
@@ -63,7 +63,7 @@ class PelvisOf {
 
   const Skeleton person_ = practiceHumanoid(), target_;
   RetargetSetup setup_;
-  RootPlacer root_;
+  RootPositioner root_;
   Pelvis pelvis_;
   Pose pose_;
   BodyFrame frame_;
@@ -128,8 +128,8 @@ TEST(Pelvis, HipsGoWhereTheMoveSays) {
     const BodyFrame before = wide.frame_;
     wide.pelvis_.apply(move, wide.pose_, wide.frame_);
     for (const Leg& leg : legs) {
-      const Vec3 way = wide.frame_.positions[leg.upper] - before.positions[leg.upper];
-      EXPECT_LT((way - wide.pelvis_.hipWay(move, leg, before)).norm(), 1e-9);
+      const Vec3 displacement = wide.frame_.positions[leg.upper] - before.positions[leg.upper];
+      EXPECT_LT((displacement - wide.pelvis_.hipDisplacement(move, leg, before)).norm(), 1e-9);
       EXPECT_LT(wide.frame_.rotations[leg.upper].angularDistance(before.rotations[leg.upper]), 1e-6);
     }
   }
@@ -140,8 +140,9 @@ TEST(Pelvis, ALegIsChangedAsFarAsItsGoalIsElsewhere) {
   person.level();
   LimbGoals goals(person.setup_, person.root_);
   Leg& leg = goals.legs()[0];
-  const auto changed = [&](const Vec3& way, const Quat& turned) {
-    leg.goal = person.frame_.positions[leg.end] + person.pelvis_.hipWay({turned, 0}, leg, person.frame_) + way;
+  const auto changed = [&](const Vec3& displacement, const Quat& turned) {
+    leg.goal = person.frame_.positions[leg.end] + person.pelvis_.hipDisplacement({turned, 0}, leg, person.frame_) +
+               displacement;
     return person.pelvis_.changeOf(leg, person.frame_, turned);
   };
   const Quat turned = turn(Vec3::UnitY(), 10);
@@ -286,7 +287,7 @@ class PelvisOfFour : public ::testing::Test {
 
   const Skeleton animal_ = limber::testing::quadruped(0.5), other_ = limber::testing::quadruped(0.4);
   const RetargetSetup setup_{animal_, other_, limber::testing::matchByForm(animal_, other_), {}};
-  const RootPlacer root_{setup_};
+  const RootPositioner root_{setup_};
   LimbGoals goals_{setup_, root_};
   Pose to_;
   BodyFrame source_, frame_, before_;

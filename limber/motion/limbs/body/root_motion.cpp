@@ -12,7 +12,7 @@ Vec3 middleOf(std::span<const Index> joints, const std::vector<Vec3>& positions)
   return sum / static_cast<double>(joints.size());
 }
 
-RootPlacer::RootPlacer(const RetargetSetup& setup) : setup_(setup) {
+RootPositioner::RootPositioner(const RetargetSetup& setup) : setup_(setup) {
   const Skeleton& target = *setup.target;
   if (!setup.person) {
     findCarrierOfLegs();
@@ -43,7 +43,7 @@ RootPlacer::RootPlacer(const RetargetSetup& setup) : setup_(setup) {
   }
 }
 
-void RootPlacer::addLoose(const LooseJoint& joint) {
+void RootPositioner::addLoose(const LooseJoint& joint) {
   const NeutralPose& neutral = setup_.targetNeutral;
   const std::vector<Affine> rest = poseGlobals(*setup_.target, setup_.targetRest);
   const Quat from = (neutral.toBody * decompose(rest[joint.carrier]).rotation).conjugate();
@@ -54,7 +54,7 @@ void RootPlacer::addLoose(const LooseJoint& joint) {
   if (!joint.matched) loose.turn = from * neutral.toBody * decompose(rest[joint.joint]).rotation;
 }
 
-void RootPlacer::findCarrierOfLegs() {
+void RootPositioner::findCarrierOfLegs() {
   const Skeleton& target = *setup_.target;
   for (const AnimalLeg& leg : setup_.animalLegs) {
     if (!hips_) hips_ = leg.target.upper;
@@ -63,7 +63,7 @@ void RootPlacer::findCarrierOfLegs() {
   }
 }
 
-std::vector<Index> RootPlacer::hindquartersOf(MapSide side) const {
+std::vector<Index> RootPositioner::hindquartersOf(MapSide side) const {
   const bool isSource = side == MapSide::kSource;
   const Skeleton& skeleton = isSource ? *setup_.source : *setup_.target;
   const std::vector<Index>* trunk = jointsOfPart(setup_.map, side, body_part::kTrunk);
@@ -81,7 +81,7 @@ std::vector<Index> RootPlacer::hindquartersOf(MapSide side) const {
   return {jointsOfPart(setup_.map, side, body_part::kPelvis)->front()};
 }
 
-void RootPlacer::findCarried() {
+void RootPositioner::findCarried() {
   const auto isUnder = [](const Skeleton& skeleton, const std::vector<Index>& matched, Index joint) {
     return std::any_of(matched.begin(), matched.end(),
                        [&](Index above) { return above != joint && isAncestorOrSelf(skeleton, above, joint); });
@@ -95,7 +95,7 @@ void RootPlacer::findCarried() {
   }
 }
 
-void RootPlacer::findPelvis() {
+void RootPositioner::findPelvis() {
   const Skeleton& target = *setup_.target;
   const Index pelvis = setup_.map.find(body_part::kPelvis)->target.back();
   const auto turns = [&](Index j) {
@@ -113,7 +113,7 @@ void RootPlacer::findPelvis() {
   }
 }
 
-void RootPlacer::findTrunk() {
+void RootPositioner::findTrunk() {
   const Skeleton& target = *setup_.target;
   const Index hindquarters = setup_.map.find(body_part::kPelvis)->target.front();
   std::vector<Index> kept;
@@ -137,50 +137,52 @@ void RootPlacer::findTrunk() {
   }
 }
 
-void RootPlacer::place(const Pose& source, const BodyFrame& sourceFrame, Pose& target, BodyFrame& frame) const {
+void RootPositioner::apply(const Pose& source, const BodyFrame& sourceFrame, Pose& target, BodyFrame& frame) const {
   if (!setup_.person) {
     if (!hindquarters_.empty()) {
       placeHindquarters(sourceFrame, target, frame);
       return;
     }
     placeEach(source, sourceFrame, target, frame);
-    setup_.targetKinematics.place(target, frame);
+    setup_.targetKinematics.update(target, frame);
     return;
   }
   if (setup_.sameBody) {
     placeEach(source, sourceFrame, target, frame);
-    setup_.targetKinematics.place(target, frame);
+    setup_.targetKinematics.update(target, frame);
   }
-  const Vec3 there = setup_.placeOf(pelvisOf(setup_.map, MapSide::kSource, sourceFrame.positions));
+  const Vec3 there = setup_.positionOf(pelvisOf(setup_.map, MapSide::kSource, sourceFrame.positions));
   movePelvis(there - pelvisOf(setup_.map, MapSide::kTarget, frame.positions), target, frame);
 }
 
-void RootPlacer::placeHindquarters(const BodyFrame& sourceFrame, Pose& target, BodyFrame& frame) const {
+void RootPositioner::placeHindquarters(const BodyFrame& sourceFrame, Pose& target, BodyFrame& frame) const {
   const std::vector<Vec3>& sourceRest = setup_.sourceNeutral.restPositions;
-  const Vec3 way = middleOf(sourceHindquarters_, sourceFrame.positions) - middleOf(sourceHindquarters_, sourceRest);
-  const Vec3 there = middleOf(hindquarters_, setup_.targetNeutral.restPositions) + setup_.scale * way;
+  const Vec3 displacement =
+      middleOf(sourceHindquarters_, sourceFrame.positions) - middleOf(sourceHindquarters_, sourceRest);
+  const Vec3 there = middleOf(hindquarters_, setup_.targetNeutral.restPositions) + setup_.scale * displacement;
   movePelvis(there - middleOf(hindquarters_, frame.positions), target, frame);
 }
 
-void RootPlacer::placeEach(const Pose& source, const BodyFrame& sourceFrame, Pose& target,
-                           const BodyFrame& frame) const {
+void RootPositioner::placeEach(const Pose& source, const BodyFrame& sourceFrame, Pose& target,
+                               const BodyFrame& frame) const {
   for (std::size_t m = 0; m < setup_.map.matches.size(); ++m) {
     const JointMatch& match = setup_.map.matches[m];
     for (std::size_t i = 0; i < (setup_.sameBody ? match.target.size() : 1); ++i) {
       const Index s = match.source[i], t = match.target[i];
       const Vec3 own = source.locals[s].translation - setup_.source->joints[s].rest.translation;
-      Vec3 way = setup_.sourceKinematics.parentRotation(s, sourceFrame) * (setup_.sourceKinematics.unit(s) * own);
+      Vec3 displacement =
+          setup_.sourceKinematics.parentRotation(s, sourceFrame) * (setup_.sourceKinematics.unit(s) * own);
       if (i == 0 && !carried_.empty() && carried_[m]) {
-        way = sourceFrame.positions[s] - setup_.sourceNeutral.restPositions[s];
+        displacement = sourceFrame.positions[s] - setup_.sourceNeutral.restPositions[s];
       }
       const double unit = setup_.scale / setup_.targetKinematics.unit(t);
       const Quat toParent = setup_.targetKinematics.parentRotation(t, frame).conjugate();
-      target.locals[t].translation = setup_.target->joints[t].rest.translation + unit * (toParent * way);
+      target.locals[t].translation = setup_.target->joints[t].rest.translation + unit * (toParent * displacement);
     }
   }
 }
 
-void RootPlacer::movePelvis(const Vec3& shift, Pose& target, BodyFrame& frame) const {
+void RootPositioner::movePelvis(const Vec3& shift, Pose& target, BodyFrame& frame) const {
   if (!hips_) return;
   const BodyKinematics& kinematics = setup_.targetKinematics;
   const Quat above = kinematics.parentRotation(*hips_, frame);
@@ -188,7 +190,7 @@ void RootPlacer::movePelvis(const Vec3& shift, Pose& target, BodyFrame& frame) c
   settle(target, frame);
 }
 
-void RootPlacer::turnPelvis(const Quat& turn, Pose& target, BodyFrame& frame) const {
+void RootPositioner::turnPelvis(const Quat& turn, Pose& target, BodyFrame& frame) const {
   if (!pelvis_) return;
   const BodyKinematics& kinematics = setup_.targetKinematics;
   const Vec3 middle = middleOfHips(frame);
@@ -200,45 +202,45 @@ void RootPlacer::turnPelvis(const Quat& turn, Pose& target, BodyFrame& frame) co
     target.locals[child].rotation =
         (kinematics.parentRotation(child, frame).conjugate() * frame.rotations[child]).normalized();
   }
-  kinematics.place(target, frame);
+  kinematics.update(target, frame);
   movePelvis(middle - middleOfHips(frame), target, frame);
 }
 
-Vec3 RootPlacer::middleOfHips(const BodyFrame& frame) const {
+Vec3 RootPositioner::middleOfHips(const BodyFrame& frame) const {
   return middleOf(hipJoints_, frame.positions);
 }
 
-void RootPlacer::settle(Pose& target, BodyFrame& frame) const {
-  setup_.targetKinematics.place(target, frame);
+void RootPositioner::settle(Pose& target, BodyFrame& frame) const {
+  setup_.targetKinematics.update(target, frame);
   settleLoose(target, frame);
 }
 
-bool RootPlacer::isFootDriven(const AnimalLeg& leg) const {
+bool RootPositioner::isFootDriven(const AnimalLeg& leg) const {
   return setup_.animalLegs.size() == 2 || setup_.quadruped || (leg.source.carrier && leg.target.carrier);
 }
 
-Index RootPlacer::carrierOf(Index joint) const {
+Index RootPositioner::carrierOf(Index joint) const {
   for (const Loose& loose : loose_) {
     if (loose.joint == joint) return loose.carrier;
   }
   return joint;
 }
 
-void RootPlacer::settleLoose(Pose& target, BodyFrame& frame) const {
+void RootPositioner::settleLoose(Pose& target, BodyFrame& frame) const {
   const BodyKinematics& kinematics = setup_.targetKinematics;
   for (const Loose& loose : loose_) {
     const Quat& carrier = frame.rotations[loose.carrier];
     const Quat toParent = kinematics.parentRotation(loose.joint, frame).conjugate();
     const Vec3 there = frame.positions[loose.carrier] + carrier * loose.offset;
-    const Vec3 way = toParent * Vec3(there - kinematics.parentPosition(loose.joint, frame));
-    target.locals[loose.joint].translation = way / kinematics.unit(loose.joint);
+    const Vec3 displacement = toParent * Vec3(there - kinematics.parentPosition(loose.joint, frame));
+    target.locals[loose.joint].translation = displacement / kinematics.unit(loose.joint);
     if (loose.turn) target.locals[loose.joint].rotation = (toParent * carrier * *loose.turn).normalized();
     // At once: what is below may carry the next one, or be loose itself. A matched joint keeps the rotation that it has
     // in the frame.
     if (loose.turn) {
       kinematics.globalsBelow(loose.joint, target, frame);
     } else {
-      kinematics.placeBelow(loose.joint, target, frame);
+      kinematics.updateBelow(loose.joint, target, frame);
     }
   }
 }

@@ -19,12 +19,12 @@ Vec3 middleOf(std::span<const Index> joints, const std::vector<Vec3>& positions)
 // quadrupeds that were matched by form that of the hindquarters alone.
 // Loose joints (looseJoints; of animals the feet that ride on their shins) are put where their carriers have them, but
 // on the same body.
-class RootPlacer {
+class RootPositioner {
  public:
-  explicit RootPlacer(const RetargetSetup& setup);
+  explicit RootPositioner(const RetargetSetup& setup);
 
   // `frame` are the globals of `target`, whose rotations are final; both are brought up to date.
-  void place(const Pose& source, const BodyFrame& sourceFrame, Pose& target, BodyFrame& frame) const;
+  void apply(const Pose& source, const BodyFrame& sourceFrame, Pose& target, BodyFrame& frame) const;
   // Brings positions up to date with rotations that were changed, and loose joints to where their limbs end now.
   void settle(Pose& target, BodyFrame& frame) const;
   // The loose joints alone, where all else is up to date.

@@ -16,15 +16,16 @@ namespace {
 using limber::testing::oddlyBuilt;
 
 // The rest pose of `target`, placed where `source` stands when moved by `way` from rest.
-Vec3 placedPelvis(const Skeleton& source, const Skeleton& target, const Vec3& way, const RetargetOptions& options) {
+Vec3 retargetedPelvis(const Skeleton& source, const Skeleton& target, const Vec3& displacement,
+                      const RetargetOptions& options) {
   const RetargetSetup setup(source, target, matchSkeletons(source, target), options);
-  const RootPlacer placer(setup);
+  const RootPositioner positioner(setup);
   Pose from = restPose(source), to = restPose(target);
-  from.locals[source.find("hips").value()].translation += way;
+  from.locals[source.find("hips").value()].translation += displacement;
   BodyFrame fromFrame, toFrame;
   setup.sourceKinematics.globals(from, fromFrame);
   setup.targetKinematics.globals(to, toFrame);
-  placer.place(from, fromFrame, to, toFrame);
+  positioner.apply(from, fromFrame, to, toFrame);
   BodyFrame again;
   setup.targetKinematics.globals(to, again);
   for (Index j = 0; j < target.jointCount(); ++j) {
@@ -35,15 +36,16 @@ Vec3 placedPelvis(const Skeleton& source, const Skeleton& target, const Vec3& wa
 
 TEST(RootMotion, TheWayScalesWithTheHips) {
   const Skeleton person = practiceHumanoid(), odd = oddlyBuilt();
-  const Vec3 way(0.4, -0.1, 1.2);
+  const Vec3 displacement(0.4, -0.1, 1.2);
   for (const RootScale scale : {RootScale::kHipHeight, RootScale::kLegLength, RootScale::kNone}) {
     RetargetOptions options;
     options.rootScale = scale;
     const RetargetSetup setup(person, odd, matchSkeletons(person, odd), options);
-    const Vec3 moved = placedPelvis(person, odd, way, options) - placedPelvis(person, odd, Vec3::Zero(), options);
-    EXPECT_LT((setup.scale * way - moved).cwiseProduct(Vec3(1, 0, 1)).norm(), 1e-9);
+    const Vec3 moved =
+        retargetedPelvis(person, odd, displacement, options) - retargetedPelvis(person, odd, Vec3::Zero(), options);
+    EXPECT_LT((setup.scale * displacement - moved).cwiseProduct(Vec3(1, 0, 1)).norm(), 1e-9);
     if (scale == RootScale::kHipHeight) continue;
-    EXPECT_NEAR(moved.y(), setup.scale * way.y(), 1e-9);
+    EXPECT_NEAR(moved.y(), setup.scale * displacement.y(), 1e-9);
   }
 }
 
@@ -56,9 +58,11 @@ TEST(RootMotion, HipsGoUpAndDownAsTheirLegsDo) {
   }
   booted.joints[booted.find("hips").value()].rest.translation.y() += 0.3;
   const RetargetSetup setup(person, booted, matchSkeletons(person, booted), {});
-  EXPECT_LT(setup.legShare, 0.8);
+  EXPECT_LT(setup.legFraction, 0.8);
   const Vec3 pelvis(0, setup.sourceGround + setup.sourceHipHeight, 0);
-  const auto height = [&](double way) { return setup.placeOf(pelvis + Vec3(0, way, 0)).y() - setup.targetGround; };
+  const auto height = [&](double pathLength) {
+    return setup.positionOf(pelvis + Vec3(0, pathLength, 0)).y() - setup.targetGround;
+  };
   EXPECT_NEAR(height(0), setup.targetHipHeight, 1e-9);
   EXPECT_NEAR(height(-setup.sourceHipHeight), 0, 1e-9) << "who lies on the ground lies on it";
   // Its legs are as long as the source's: little and upward ways stay as long.
@@ -69,13 +73,13 @@ TEST(RootMotion, HipsGoUpAndDownAsTheirLegsDo) {
 TEST(RootMotion, APelvisTurnsAloneAboutItsMiddle) {
   const Skeleton person = practiceHumanoid(), odd = oddlyBuilt();
   const RetargetSetup setup(person, odd, matchSkeletons(person, odd), {});
-  const RootPlacer placer(setup);
+  const RootPositioner positioner(setup);
   Pose pose = restPose(odd);
   BodyFrame before, after, again;
   setup.targetKinematics.globals(pose, before);
   after = before;
   const Quat turn = limber::testing::turn(Vec3(0.2, 1, 0.3), 30);
-  placer.turnPelvis(turn, pose, after);
+  positioner.turnPelvis(turn, pose, after);
   setup.targetKinematics.globals(pose, again);
   const Index hips = odd.find("hips").value(), left = odd.find("leftUpperLeg").value(),
               right = odd.find("rightUpperLeg").value();
@@ -149,7 +153,7 @@ TEST(RootMotion, ControlsAreWhereTheJointsAreThatTheyRestOn) {
 
 // A body a metre long with a leg below each end; lying down, the legs go on along the body.
 Skeleton animal(double leg, bool lies) {
-  const Vec3 way = lies ? Vec3(0, 0, leg) : Vec3(0, -leg, 0);
+  const Vec3 displacement = lies ? Vec3(0, 0, leg) : Vec3(0, -leg, 0);
   Skeleton skeleton;
   const auto add = [&](const char* name, std::optional<Index> parent, const Vec3& offset) {
     Joint joint;
@@ -160,8 +164,8 @@ Skeleton animal(double leg, bool lies) {
   };
   add("body", std::nullopt, lies ? Vec3(Vec3::Zero()) : Vec3(0, leg, 0));
   add("chest", Index{0}, Vec3(0, 0, 1));
-  add("hindPaw", Index{0}, lies ? Vec3(-way) : way);
-  add("forePaw", Index{1}, way);
+  add("hindPaw", Index{0}, lies ? Vec3(-displacement) : displacement);
+  add("forePaw", Index{1}, displacement);
   return skeleton;
 }
 
@@ -196,13 +200,13 @@ TEST(RootMotion, HipsOfAnimalsGoAsTheSources) {
   const Skeleton one = limber::testing::quadruped(0.5), other = limber::testing::quadrupedOnOneJoint();
   for (const auto& [source, target] : {std::pair(one, other), std::pair(other, one)}) {
     const RetargetSetup setup(source, target, limber::testing::matchByForm(source, target), {});
-    const RootPlacer placer(setup);
+    const RootPositioner positioner(setup);
     Pose from = restPose(source), to = restPose(target);
     from.locals[0].rotation = to.locals[0].rotation = limber::testing::turn(-Vec3::UnitX(), 40);
     BodyFrame fromFrame, toFrame;
     setup.sourceKinematics.globals(from, fromFrame);
     setup.targetKinematics.globals(to, toFrame);
-    placer.place(from, fromFrame, to, toFrame);
+    positioner.apply(from, fromFrame, to, toFrame);
     EXPECT_LT(
         (toFrame.positions[target.find("b0LeftOne").value()] - fromFrame.positions[source.find("b0LeftOne").value()])
             .norm(),
@@ -213,13 +217,13 @@ TEST(RootMotion, HipsOfAnimalsGoAsTheSources) {
 TEST(RootMotion, ThePelvisMovesByWhatIsAsked) {
   const Skeleton person = practiceHumanoid(), odd = limber::testing::withOtherAxes(oddlyBuilt());
   const RetargetSetup setup(person, odd, matchSkeletons(person, odd), {});
-  const RootPlacer placer(setup);
+  const RootPositioner positioner(setup);
   Pose pose = restPose(odd);
   BodyFrame frame;
   setup.targetKinematics.globals(pose, frame);
   const BodyFrame before = frame;
   const Vec3 shift(0.1, -0.2, 0.3);
-  placer.movePelvis(shift, pose, frame);
+  positioner.movePelvis(shift, pose, frame);
   const Index hips = setup.map.find(body_part::kPelvis)->target.front(),
               hand = setup.map.find(body_part::arm(Side::kLeft, Segment::kEnd))->target.front();
   EXPECT_LT((frame.positions[hips] - before.positions[hips] - shift).norm(), 1e-12);

@@ -10,7 +10,7 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kLeastSamples = 12;  // samples; 4 to 60; that a joint needs for a tube; set by hand
+constexpr std::size_t kMinSamples = 12;  // samples; 4 to 60; that a joint needs for a tube; set by hand
 // Sectors; 0 to 1, but no simple fraction; the skin of a limb that was made regular lies on no edge between two, where
 // the last bit of an angle, which compilers' libraries give differently, would tell to which it belongs; rounding only.
 constexpr double kOffEdges = 0.13;
@@ -19,15 +19,15 @@ constexpr double kOutermost = 0.9;  // fraction; 0.5 to 1; of the samples of one
 }  // namespace
 
 std::optional<SkinTube> SkinTube::about(Index joint, const BodySkin& skin) {
-  std::vector<Vec3> places;
+  std::vector<Vec3> positions;
   Vec3 middle = Vec3::Zero();
   for (std::size_t i = 0; i < skin.joints.size(); ++i) {
     if (skin.joints[i] != joint) continue;
-    places.push_back(skin.places[i]);
-    middle += skin.places[i];
+    positions.push_back(skin.positions[i]);
+    middle += skin.positions[i];
   }
-  if (places.size() < kLeastSamples) return std::nullopt;
-  middle /= static_cast<double>(places.size());
+  if (positions.size() < kMinSamples) return std::nullopt;
+  middle /= static_cast<double>(positions.size());
   if (!(middle.norm() > 0)) return std::nullopt;
   SkinTube tube;
   tube.joint_ = joint;
@@ -35,14 +35,14 @@ std::optional<SkinTube> SkinTube::about(Index joint, const BodySkin& skin) {
   tube.side_ = tube.axis_.unitOrthogonal();
   tube.ahead_ = tube.axis_.cross(tube.side_);
   std::vector<double> along;
-  for (const Vec3& place : places) along.push_back(place.dot(tube.axis_));
+  for (const Vec3& position : positions) along.push_back(position.dot(tube.axis_));
   const auto [first, last] = std::minmax_element(along.begin(), along.end());
   tube.begin_ = *first;
   tube.end_ = *last;
   if (!(tube.end_ > tube.begin_)) return std::nullopt;
   std::array<std::vector<double>, kCells> found;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    const double x = places[i].dot(tube.side_), z = places[i].dot(tube.ahead_);
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const double x = positions[i].dot(tube.side_), z = positions[i].dot(tube.ahead_);
     const int ring =
         std::min(static_cast<int>(kRings * (along[i] - tube.begin_) / (tube.end_ - tube.begin_)), kRings - 1);
     const int sector = static_cast<int>(std::floor(sectorAt(x, z) + 0.5)) % kSectors;
@@ -92,8 +92,9 @@ double SkinTube::radiusAt(double along, double sector) const {
 
 std::optional<SkinTube::Depth> SkinTube::depthOf(const Vec3& point, const BodyFrame& frame) const {
   const Quat& turn = frame.rotations[joint_];
-  const Vec3 place = turn.conjugate() * (point - frame.positions[joint_]);
-  const double along = place.dot(axis_), x = place.dot(side_), z = place.dot(ahead_), away = std::sqrt(x * x + z * z);
+  const Vec3 position = turn.conjugate() * (point - frame.positions[joint_]);
+  const double along = position.dot(axis_), x = position.dot(side_), z = position.dot(ahead_),
+               away = std::sqrt(x * x + z * z);
   if (along < begin_ || along > end_ || !(away > 0)) return std::nullopt;
   // Thinner towards the ends, so that nothing jumps there.
   const double inner = std::min(along - begin_, end_ - along) / (end_ - begin_);

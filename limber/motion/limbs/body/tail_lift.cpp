@@ -22,7 +22,7 @@ Vec3 level(const Vec3& v) {
 
 }  // namespace
 
-TailLift::TailLift(const RetargetSetup& setup, const RootPlacer& root) : setup_(setup), root_(root) {
+TailLift::TailLift(const RetargetSetup& setup, const RootPositioner& root) : setup_(setup), root_(root) {
   if (!setup.person) tail_ = setup.targetTail;
   if (tail_.size() < 2 || !setup.target->joints[tail_.front()].parent) tail_.clear();
 }
@@ -32,11 +32,11 @@ double TailLift::needed(const BodyFrame& frame) const {
   const double floor = setup_.targetGround + kClearance * setup_.targetHipHeight;
   double sum = 0, weights = 0;
   for (auto joint = tail_.begin() + 1; joint != tail_.end(); ++joint) {
-    const Vec3 way = frame.positions[*joint] - base;
-    const double length = way.norm();
+    const Vec3 displacement = frame.positions[*joint] - base;
+    const double length = displacement.norm();
     if (!(length > 0)) continue;
     const double least = std::asin(std::clamp((floor - base.y()) / length, -1.0, 1.0));
-    const double up = softPositive(least - std::asin(std::clamp(way.y() / length, -1.0, 1.0)), kSoft);
+    const double up = softPositive(least - std::asin(std::clamp(displacement.y() / length, -1.0, 1.0)), kSoft);
     const double weight = std::exp(up / kFine);
     sum += weight * up;
     weights += weight;

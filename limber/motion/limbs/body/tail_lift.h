@@ -12,7 +12,7 @@ namespace limber {
 class TailLift {
  public:
   // None for people, and where no joint is called a tail. Both must outlive this.
-  TailLift(const RetargetSetup& setup, const RootPlacer& root);
+  TailLift(const RetargetSetup& setup, const RootPositioner& root);
 
   // `frame` are the globals of `target`; both are brought up to date.
   void apply(Pose& target, BodyFrame& frame) const;
@@ -23,7 +23,7 @@ class TailLift {
   Vec3 heading(const BodyFrame& frame) const;
 
   const RetargetSetup& setup_;
-  const RootPlacer& root_;
+  const RootPositioner& root_;
   std::vector<Index> tail_;  // of the target, root to tip
 };
 

@@ -41,7 +41,7 @@ class TailLiftTest : public ::testing::Test {
   const Skeleton source_ = quadruped(0.5);
   Skeleton longTailed_;
   std::optional<RetargetSetup> setup_;
-  std::optional<RootPlacer> root_;
+  std::optional<RootPositioner> root_;
   std::optional<TailLift> lift_;
   Pose pose_;
   BodyFrame frame_;

@@ -9,7 +9,7 @@ namespace limber {
 
 namespace {
 
-Vec3 wayBetween(const std::vector<Index>& from, const std::vector<Index>& to, const std::vector<Vec3>& positions) {
+Vec3 offsetBetween(const std::vector<Index>& from, const std::vector<Index>& to, const std::vector<Vec3>& positions) {
   return middleOf(to, positions) - middleOf(from, positions);
 }
 
@@ -20,7 +20,7 @@ double slopeOf(double rise) {
 
 }  // namespace
 
-TrunkTilt::TrunkTilt(const RetargetSetup& setup, const RootPlacer& root) : setup_(setup), root_(root) {
+TrunkTilt::TrunkTilt(const RetargetSetup& setup, const RootPositioner& root) : setup_(setup), root_(root) {
   if (!setup.quadruped || !root.turnsPelvis()) return;
   for (const AnimalLeg& leg : setup.animalLegs) {
     (leg.fore ? shoulders_ : hips_).push_back(leg.target.upper);
@@ -35,15 +35,15 @@ bool TrunkTilt::isFore(Index upper) const {
 
 void TrunkTilt::follow(const BodyFrame& source, Pose& target, BodyFrame& frame) const {
   if (!tilts()) return;
-  const Vec3 sourceWay = wayBetween(sourceHips_, sourceShoulders_, source.positions) -
-                         wayBetween(sourceHips_, sourceShoulders_, setup_.sourceNeutral.restPositions);
+  const Vec3 sourceOffset = offsetBetween(sourceHips_, sourceShoulders_, source.positions) -
+                            offsetBetween(sourceHips_, sourceShoulders_, setup_.sourceNeutral.restPositions);
   const Vec3 trunk = trunkOf(frame);
-  const Vec3 way = trunk - wayBetween(hips_, shoulders_, setup_.targetNeutral.restPositions);
-  root_.turnPelvis(turnFor(setup_.scale * sourceWay.y() - way.y(), trunk), target, frame);
+  const Vec3 displacement = trunk - offsetBetween(hips_, shoulders_, setup_.targetNeutral.restPositions);
+  root_.turnPelvis(turnFor(setup_.scale * sourceOffset.y() - displacement.y(), trunk), target, frame);
 }
 
 Vec3 TrunkTilt::trunkOf(const BodyFrame& frame) const {
-  return wayBetween(hips_, shoulders_, frame.positions);
+  return offsetBetween(hips_, shoulders_, frame.positions);
 }
 
 Quat TrunkTilt::turnFor(double rise, const Vec3& trunk) {

@@ -13,7 +13,7 @@ namespace limber {
 class TrunkTilt {
  public:
   // Both must outlive this.
-  TrunkTilt(const RetargetSetup& setup, const RootPlacer& root);
+  TrunkTilt(const RetargetSetup& setup, const RootPositioner& root);
 
   // False for people, and where legs or trunk are told otherwise.
   bool tilts() const { return !shoulders_.empty(); }
@@ -32,7 +32,7 @@ class TrunkTilt {
 
  private:
   const RetargetSetup& setup_;
-  const RootPlacer& root_;
+  const RootPositioner& root_;
   std::vector<Index> hips_, shoulders_, sourceHips_, sourceShoulders_;  // where legs begin
 };
 

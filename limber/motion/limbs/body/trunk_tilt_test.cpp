@@ -46,7 +46,7 @@ class TrunkTiltTest : public ::testing::Test {
 
   const Skeleton source_ = quadruped(0.5), target_ = longTrunked(1.5);
   const RetargetSetup setup_{source_, target_, limber::testing::matchByForm(source_, target_), {}};
-  const RootPlacer root_{setup_};
+  const RootPositioner root_{setup_};
   const TrunkTilt tilt_{setup_, root_};
   Pose to_;
   BodyFrame sourceFrame_, frame_, before_;
@@ -107,8 +107,8 @@ TEST(TrunkTilt, LeavesPeopleAndThoseMatchedByNamesAlone) {
   const Skeleton person = practiceHumanoid(), animal = quadruped(0.5), other = quadruped(0.4);
   const RetargetSetup people(person, person, matchSkeletons(person, person), {});
   const RetargetSetup named(animal, other, matchSkeletons(animal, other), {});
-  EXPECT_FALSE(TrunkTilt(people, RootPlacer(people)).tilts());
-  EXPECT_FALSE(TrunkTilt(named, RootPlacer(named)).tilts());
+  EXPECT_FALSE(TrunkTilt(people, RootPositioner(people)).tilts());
+  EXPECT_FALSE(TrunkTilt(named, RootPositioner(named)).tilts());
 }
 
 }  // namespace

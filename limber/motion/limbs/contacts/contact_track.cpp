@@ -83,8 +83,8 @@ void ContactReader::read(Watched& watched, const BodyFrame& source, double secon
   bool heel = watched.ankle.next(ankle, ankle.y() - foot.ankleGround, seconds);
   bool toes = false;
   if (foot.toes) {
-    const Vec3& place = source.positions[*foot.toes];
-    toes = watched.toes.next(place, place.y() - foot.toesGround, seconds);
+    const Vec3& position = source.positions[*foot.toes];
+    toes = watched.toes.next(position, position.y() - foot.toesGround, seconds);
   }
   FootContact& contact = watched.contact;
   if (const std::optional<bool> edited = editAt(watched)) {
@@ -118,9 +118,9 @@ ContactTrack::ContactTrack(const RetargetSetup& setup, std::span<const WatchedFo
     cuts_.push_back(reader.atCut());
     for (std::size_t i = 0; i < feet_; ++i) {
       contacts_.push_back(reader.foot(i));
-      Place& place = places_.emplace_back();
-      place.ankle = frame.positions[feet[i].ankle];
-      if (feet[i].toes) place.toes = frame.positions[*feet[i].toes];
+      FootPosition& position = positions_.emplace_back();
+      position.ankle = frame.positions[feet[i].ankle];
+      if (feet[i].toes) position.toes = frame.positions[*feet[i].toes];
     }
   }
 }
@@ -133,11 +133,12 @@ double ContactTrack::firmness(std::size_t frame, std::size_t foot) const {
   while (before > 0 && frame - before < reach && !cuts_[before]) --before;
   while (after + 1 < frames() && after - frame < reach && !cuts_[after + 1]) ++after;
   if (before == after) return 1;
-  const Place &from = placeAt(before, foot), &to = placeAt(after, foot);
-  const Vec3 way = anchor == FootAnchor::kToes ? to.toes - from.toes : to.ankle - from.ankle;
-  const double speed = Vec3(way.x(), 0, way.z()).norm() / (static_cast<double>(after - before) * frameSeconds_);
-  const double share = speed / (kFreeSpeed * hipHeight_);
-  return std::pow(kFreeFirmness, share * share);
+  const FootPosition &from = positionAt(before, foot), &to = positionAt(after, foot);
+  const Vec3 displacement = anchor == FootAnchor::kToes ? to.toes - from.toes : to.ankle - from.ankle;
+  const double speed =
+      Vec3(displacement.x(), 0, displacement.z()).norm() / (static_cast<double>(after - before) * frameSeconds_);
+  const double fraction = speed / (kFreeSpeed * hipHeight_);
+  return std::pow(kFreeFirmness, fraction * fraction);
 }
 
 std::vector<TimeSpan> ContactTrack::spans(std::size_t foot) const {

@@ -103,16 +103,16 @@ class ContactTrack {
   std::vector<TimeSpan> spans(std::size_t foot) const;
 
  private:
-  struct Place {
+  struct FootPosition {
     Vec3 ankle = Vec3::Zero(), toes = Vec3::Zero();
   };
-  const Place& placeAt(std::size_t frame, std::size_t foot) const { return places_[frame * feet_ + foot]; }
+  const FootPosition& positionAt(std::size_t frame, std::size_t foot) const { return positions_[frame * feet_ + foot]; }
 
   std::size_t feet_;
-  double frameSeconds_, hipHeight_;    // the source's
-  std::vector<bool> cuts_;             // by frame
-  std::vector<FootContact> contacts_;  // of each frame, of each foot
-  std::vector<Place> places_;          // likewise
+  double frameSeconds_, hipHeight_;      // the source's
+  std::vector<bool> cuts_;               // by frame
+  std::vector<FootContact> contacts_;    // of each frame, of each foot
+  std::vector<FootPosition> positions_;  // likewise
 };
 
 }  // namespace limber

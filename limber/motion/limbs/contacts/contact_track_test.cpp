@@ -14,7 +14,7 @@ class ContactTrackTest : public ::testing::Test {
  protected:
   ContactTrack track() const {
     const RetargetSetup setup(person, odd, matchSkeletons(person, odd), {}, &motion);
-    const RootPlacer root(setup);
+    const RootPositioner root(setup);
     return {setup, LimbGoals(setup, root).watchedFeet(), motion};
   }
 
@@ -53,8 +53,8 @@ TEST_F(ContactTrackTest, AFootIsHeldTheLessTheFasterItMovesWhileItStands) {
   const auto firmnessAt = [&](double speed) {
     motion.poses.assign(30, restPose(person));
     for (std::size_t f = 0; f < motion.poses.size(); ++f) {
-      const double way = speed * hipHeight * motion.frameSeconds * static_cast<double>(f);
-      motion.poses[f].locals[0].translation += Vec3(way, 0, 0);
+      const double pathLength = speed * hipHeight * motion.frameSeconds * static_cast<double>(f);
+      motion.poses[f].locals[0].translation += Vec3(pathLength, 0, 0);
     }
     return track().firmness(15, 0);
   };

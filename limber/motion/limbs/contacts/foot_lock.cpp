@@ -20,8 +20,8 @@ constexpr double kSettling = 18;    // 10 to 30; of its height over where it has
 constexpr double kUntwisting = 10;  // 5 to 20; of the twist of a foot that is free
 constexpr double kRolling = 40;     // 20 to 80; of the speed left where the pinned point changes
 
-constexpr double kMostTwist = 0.35;  // radians; 0.2 to 0.8; a foot that is twisted by more is let go; set by hand
-constexpr double kCaughtUp = 0.25;   // fraction of the slack or the twist; 0 to 1; pinned again below it; set by hand
+constexpr double kMaxTwist = 0.35;  // radians; 0.2 to 0.8; a foot that is twisted by more is let go; set by hand
+constexpr double kCaughtUp = 0.25;  // fraction of the slack or the twist; 0 to 1; pinned again below it; set by hand
 
 // Height of the ankle over which the foot settles.
 double baseHeight(const FootLock::Frame& frame, FootAnchor anchor) {
@@ -36,7 +36,7 @@ Vec3 level(const Vec3& v) {
 
 }  // namespace
 
-void FootLock::Share::follow(double wanted, double seconds) {
+void FootLock::Factor::follow(double wanted, double seconds) {
   springTo(wanted, kGrip, seconds, value, speed);
 }
 
@@ -70,7 +70,7 @@ Vec3 FootLock::next(const Frame& frame, double seconds, double slack) {
 }
 
 void FootLock::turn(const Frame& frame, double seconds) {
-  twisted_ = frame.flat && std::abs(twist_) > (twisted_ ? kCaughtUp : 1) * kMostTwist;
+  twisted_ = frame.flat && std::abs(twist_) > (twisted_ ? kCaughtUp : 1) * kMaxTwist;
   turning_.follow(frame.flat && !twisted_ ? 0 : 1, seconds);
   const Vec3 from = level(before_->toes - before_->ankle), to = level(frame.toes - frame.ankle);
   const double turned = std::atan2(from.cross(to).y(), from.dot(to));
@@ -89,14 +89,14 @@ void FootLock::moveAlong(const Frame& frame, double seconds, double slack) {
   Vec3 left = -behind;
   springTo(Vec3(Vec3::Zero()), kFading, seconds, left, catchUpSpeed_);
   catchUpSpeed_ *= freedom;
-  const Vec3 freeWay = level(frame.ankle - before_->ankle) + left + behind;
+  const Vec3 freeDisplacement = level(frame.ankle - before_->ankle) + left + behind;
   const bool byToes = frame.anchor == FootAnchor::kNone ? byToes_ : frame.anchor == FootAnchor::kToes;
   // Where another point is held from here on, the ankle's speed goes over to that which this point leaves it.
   if (byToes != byToes_) rollSpeed_ += (byToes ? 1 : -1) * (1 - freedom) / seconds * rolled_;
   byToes_ = byToes;
   rollSpeed_ *= std::exp(-kRolling * seconds);
   // The point moves by its share of the free way, and the ankle as the foot turns about it.
-  out_ += freedom * freeWay + seconds * rollSpeed_;
+  out_ += freedom * freeDisplacement + seconds * rollSpeed_;
   if (byToes_) out_ -= (1 - freedom) * rolled_;
 }
 

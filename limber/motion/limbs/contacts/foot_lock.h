@@ -31,7 +31,7 @@ class FootLock {
 
  private:
   // To which the foot is free, 0 to 1.
-  struct Share {
+  struct Factor {
     double value = 1, speed = 0;
     void follow(double wanted, double seconds);
   };
@@ -43,11 +43,11 @@ class FootLock {
   FootAnchor anchor_ = FootAnchor::kNone;
   bool byToes_ = false;  // the point that is held, or was at last
   Vec3 out_ = Vec3::Zero();
-  Share freedom_;
+  Factor freedom_;
   bool lost_ = false;
   Vec3 catchUpSpeed_ = Vec3::Zero(), rollSpeed_ = Vec3::Zero();
   double lift_ = 0, liftSpeed_ = 0;  // over where the anchor has the ankle, fades out
-  Share turning_;
+  Factor turning_;
   bool twisted_ = false;
   double twist_ = 0;
   Vec3 roll_ = Vec3::Zero(), rolled_ = Vec3::Zero();  // from the ankle to the toes, and the level way in this frame

@@ -70,7 +70,7 @@ TEST(FootLock, AFootThatStopsAtOnceStopsAtOnceWhenHeld) {
 }
 
 TEST(FootLock, AHeldFootSlipsAsFarAsItMay) {
-  const auto wayOf = [](double slip) {
+  const auto directionOf = [](double slip) {
     FootLock lock;
     Vec3 out = Vec3::Zero();
     for (int i = 0; i <= 10; ++i) {
@@ -82,10 +82,10 @@ TEST(FootLock, AHeldFootSlipsAsFarAsItMay) {
     }
     return out.z();
   };
-  EXPECT_NEAR(wayOf(0), 0, 1e-9);
-  EXPECT_GT(wayOf(0.3), 0.3 * 0.05);
-  EXPECT_GT(wayOf(0.6), wayOf(0.3) + 0.005);
-  EXPECT_NEAR(wayOf(1), 0.05, 1e-9) << "as if free";
+  EXPECT_NEAR(directionOf(0), 0, 1e-9);
+  EXPECT_GT(directionOf(0.3), 0.3 * 0.05);
+  EXPECT_GT(directionOf(0.6), directionOf(0.3) + 0.005);
+  EXPECT_NEAR(directionOf(1), 0.05, 1e-9) << "as if free";
 }
 
 // Recordings tremble, so that a planted foot is taken for a free one now and then.
@@ -149,8 +149,8 @@ TEST(PlantDetector, AFootThatRisesIsFreeThoughOneThatCreepsAsFastIsNot) {
     PlantDetector detector(1);
     bool planted = detector.next(Vec3::Zero(), 0, 0);
     for (int i = 1; i <= 6; ++i) {
-      const Vec3 way = i * kStep * velocity;
-      planted = detector.next(way, way.y(), kStep);
+      const Vec3 displacement = i * kStep * velocity;
+      planted = detector.next(displacement, displacement.y(), kStep);
     }
     return planted;
   };

@@ -43,23 +43,23 @@ Vec3 level(const Vec3& v) {
 
 }  // namespace
 
-double footPitchShare(const RetargetSetup& setup, const Leg& leg) {
+double footPitchFraction(const RetargetSetup& setup, const Leg& leg) {
   if (!leg.toes) return 1;
   const double source = setup.scale * lengthOf(setup.sourceNeutral, leg.sourceEnd, *leg.sourceToes);
   const double times = lengthOf(setup.targetNeutral, leg.end, *leg.toes) / (kLong * source);
   return source > 0 && times > 1 ? 1 / (times * times) : 1;
 }
 
-void limitFootPitch(const RetargetSetup& setup, const RootPlacer& root, std::span<const Leg> legs, Pose& target,
+void limitFootPitch(const RetargetSetup& setup, const RootPositioner& root, std::span<const Leg> legs, Pose& target,
                     BodyFrame& frame) {
   const NeutralPose& neutral = setup.targetNeutral;
   for (const Leg& leg : legs) {
     const double standing = setup.person ? leg.contact.flatness : 0;
     if (!leg.toes || (leg.footPitch == 1 && standing == 0)) continue;
     const Quat turn = frame.rotations[leg.end] * neutral.rotations[leg.end].conjugate();
-    const Vec3 stands = (neutral.positions[*leg.toes] - neutral.positions[leg.end]).normalized();
-    const Vec3 side = turn * Vec3::UnitX(), line = turn * stands;
-    const Vec3 resting = Eigen::AngleAxisd(std::atan2(-side.z(), side.x()), Vec3::UnitY()) * stands;
+    const Vec3 restDirection = (neutral.positions[*leg.toes] - neutral.positions[leg.end]).normalized();
+    const Vec3 side = turn * Vec3::UnitX(), line = turn * restDirection;
+    const Vec3 resting = Eigen::AngleAxisd(std::atan2(-side.z(), side.x()), Vec3::UnitY()) * restDirection;
     const double upright = std::hypot(side.x(), side.z()) * smoothStep(kSteepest + (turn * Vec3::UnitY()).y());
     const double pitch = angleOf(line, resting), flat = standing * kFlat * kFlat / (kFlat * kFlat + pitch * pitch);
     const double less = (1 - leg.footPitch * (1 - flat)) * upright;
@@ -69,18 +69,18 @@ void limitFootPitch(const RetargetSetup& setup, const RootPlacer& root, std::spa
   }
 }
 
-void keepTipUp(const RetargetSetup& setup, const RootPlacer& root, const Leg& leg, Pose& target, BodyFrame& frame) {
+void keepTipUp(const RetargetSetup& setup, const RootPositioner& root, const Leg& leg, Pose& target, BodyFrame& frame) {
   const NeutralPose& neutral = setup.targetNeutral;
   const Vec3 ankle = frame.positions[leg.end], line = frame.positions[*leg.tip] - ankle;
   const Quat turn = frame.rotations[leg.end] * neutral.rotations[leg.end].conjugate();
   // Where the foot faces, also where it points straight down.
-  const Vec3 stands = neutral.positions[*leg.tip] - neutral.positions[leg.end];
-  const Vec3 ahead = level(turn * (level(stands).normalized() + Vec3::UnitY()));
+  const Vec3 restDirection = neutral.positions[*leg.tip] - neutral.positions[leg.end];
+  const Vec3 ahead = level(turn * (level(restDirection).normalized() + Vec3::UnitY()));
   const double along = line.dot(ahead.normalized()), length = std::hypot(along, line.y());
   if (!(ahead.norm() > 1e-6) || !(length > 0)) return;
   const double slope = std::atan2(line.y(), along);
-  const double share = std::clamp((kUpTip + slope) / (kUpTip - kSteepTip), 0.0, 1.0);
-  const double up = share * softPositive(-slopeToGround((ankle.y() - leg.toesGround) / length) - slope, kSoftTip);
+  const double fraction = std::clamp((kUpTip + slope) / (kUpTip - kSteepTip), 0.0, 1.0);
+  const double up = fraction * softPositive(-slopeToGround((ankle.y() - leg.toesGround) / length) - slope, kSoftTip);
   const Quat raised = Eigen::AngleAxisd(up, ahead.normalized().cross(Vec3::UnitY())) * frame.rotations[leg.end];
   LimbReach(setup, root).turnEnd(leg, raised, frame, target);
 }

@@ -13,7 +13,7 @@ using limber::testing::turn;
 // By how many degrees the left foot is turned by limitFootPitch, of someone with feet `times` as long who stands but
 // for `hips` and `foot`; `left` gets what is left of the turn of the foot against the ground.
 struct LimitedFoot {
-  double changed = 0, left = 0, share = 0;
+  double changed = 0, left = 0, fraction = 0;
 };
 LimitedFoot limited(double times, const Quat& hips, const Quat& foot, double flatness = 0) {
   const Skeleton person = practiceHumanoid();
@@ -22,7 +22,7 @@ LimitedFoot limited(double times, const Quat& hips, const Quat& foot, double fla
     longFooted.joints[longFooted.find(toes).value()].rest.translation *= times;
   }
   const RetargetSetup setup(person, longFooted, matchSkeletons(person, longFooted), {});
-  const RootPlacer root(setup);
+  const RootPositioner root(setup);
   LimbGoals goals(setup, root);
   goals.legs()[0].contact.flatness = flatness;
   Pose pose = restPose(longFooted);
@@ -45,15 +45,15 @@ LimitedFoot limited(double times, const Quat& hips, const Quat& foot, double fla
 TEST(FootPitch, OrdinaryFeetPitchAsTheSources) {
   for (const double times : {0.5, 1.0, 1.25}) {
     const LimitedFoot foot = limited(times, Quat::Identity(), turn(Vec3::UnitX(), 40));
-    EXPECT_EQ(foot.share, 1);
+    EXPECT_EQ(foot.fraction, 1);
     EXPECT_EQ(foot.changed, 0);
   }
 }
 
 TEST(FootPitch, LongOnesPitchLess) {
   const LimitedFoot foot = limited(4, Quat::Identity(), turn(Vec3::UnitX(), 40));
-  EXPECT_LT(foot.share, 0.5);
-  EXPECT_NEAR(foot.left, 40 * foot.share, 2);
+  EXPECT_LT(foot.fraction, 0.5);
+  EXPECT_NEAR(foot.left, 40 * foot.fraction, 2);
 }
 
 TEST(FootPitch, OnesThatStandFlatLieAsAtRest) {
@@ -80,7 +80,7 @@ struct Tip {
 Tip keptUp(double lift, double degrees) {
   const Skeleton toeless = limber::testing::withoutToes(practiceHumanoid()), person = practiceHumanoid();
   const RetargetSetup setup(toeless, person, matchSkeletons(toeless, person), {});
-  const RootPlacer root(setup);
+  const RootPositioner root(setup);
   LimbGoals goals(setup, root);
   const Leg& leg = goals.legs()[0];
   Pose pose = restPose(person);

@@ -8,7 +8,7 @@ namespace limber {
 namespace {
 
 // Of a point that goes along the ground at `speed`, and shakes by `tremble` from frame to frame, all in hip heights.
-double plantedShare(double framesPerSecond, double speed, double tremble, double height = 0) {
+double plantedFraction(double framesPerSecond, double speed, double tremble, double height = 0) {
   constexpr double kHip = 0.9;
   PlantDetector detector(kHip);
   double planted = 0, count = 0;
@@ -23,15 +23,15 @@ double plantedShare(double framesPerSecond, double speed, double tremble, double
 
 TEST(PlantDetector, StandsWhileSlowAndLow) {
   for (const double rate : {24.0, 30.0, 60.0, 100.0, 120.0, 240.0}) {
-    EXPECT_EQ(plantedShare(rate, 0.1, 0), 1) << rate;
-    EXPECT_LT(plantedShare(rate, 0.8, 0), 0.1) << rate;
-    EXPECT_EQ(plantedShare(rate, 0.1, 0, 0.2), 0) << rate;
+    EXPECT_EQ(plantedFraction(rate, 0.1, 0), 1) << rate;
+    EXPECT_LT(plantedFraction(rate, 0.8, 0), 0.1) << rate;
+    EXPECT_EQ(plantedFraction(rate, 0.1, 0, 0.2), 0) << rate;
   }
 }
 
 TEST(PlantDetector, SeesThroughTrembling) {
   // 0.003 hip heights from frame to frame is 0.36 a second at 120 frames a second: more than a planted foot moves.
-  EXPECT_EQ(plantedShare(120, 0, 0.003), 1);
+  EXPECT_EQ(plantedFraction(120, 0, 0.003), 1);
 }
 
 TEST(PlantDetector, ForgetsWhenTold) {
@@ -47,10 +47,10 @@ TEST(PlantDetector, LeavesLaterThanItEnters) {
   for (int f = 0; f < 10; ++f) standing.next(Vec3::Zero(), 0, 0.03);
   bool entered = false, stayed = true;
   for (int f = 0; f < 10; ++f) {
-    const Vec3 place(0.4 * 0.03 * f, 0, 0);
+    const Vec3 position(0.4 * 0.03 * f, 0, 0);
     // The first frame of one counts as unmoved, so let it be off the ground.
-    entered = slow.next(place, f == 0 ? 1 : 0, 0.03) || entered;
-    stayed = standing.next(place, 0, 0.03) && stayed;
+    entered = slow.next(position, f == 0 ? 1 : 0, 0.03) || entered;
+    stayed = standing.next(position, 0, 0.03) && stayed;
   }
   EXPECT_FALSE(entered);
   EXPECT_TRUE(stayed);

@@ -13,13 +13,13 @@ constexpr double kOnTheSpot = 0.1;  // hip heights a second; 0.05 to 0.3; a slow
 
 // Where it goes on the whole, in its own frame.
 Vec3 directionOf(const std::vector<GroundFrame>& ground, double frameSeconds, double hipHeight) {
-  Vec3 way = Vec3::Zero();
+  Vec3 displacement = Vec3::Zero();
   for (std::size_t f = 1; f < ground.size(); ++f) {
     const GroundStep step = stepBetween(ground[f - 1], ground[f]);
-    way += Vec3(step.x, 0, step.z);
+    displacement += Vec3(step.x, 0, step.z);
   }
   const double seconds = static_cast<double>(ground.size() - 1) * frameSeconds;
-  return way.norm() > kOnTheSpot * hipHeight * seconds ? Vec3(way.normalized()) : Vec3(Vec3::UnitZ());
+  return displacement.norm() > kOnTheSpot * hipHeight * seconds ? Vec3(displacement.normalized()) : Vec3(Vec3::UnitZ());
 }
 
 // Where between the frames before and after the value is largest, in frames from the middle.
@@ -62,16 +62,16 @@ std::vector<Footfall> footfallsOf(const MixBody& body, const PoseSequence& frame
     body.globals(pose, frame);
     ground.push_back(groundFrameOf(body, frame));
     for (std::size_t i = 0; i < legs; ++i) {
-      const Vec3 way = frame.positions[body.legs()[i].end] - ground.back().place();
-      feet[i].push_back(ground.back().turn().conjugate() * way);
+      const Vec3 displacement = frame.positions[body.legs()[i].end] - ground.back().position();
+      feet[i].push_back(ground.back().turn().conjugate() * displacement);
     }
   }
   const Vec3 ahead = directionOf(ground, frames.frameSeconds, hipHeight);
   std::vector<Footfall> falls;
   for (std::size_t i = 0; i < legs; ++i) {
-    std::vector<double> way;
-    for (const Vec3& foot : feet[i]) way.push_back(foot.dot(ahead));
-    for (const double top : topsOf(way, kSwing * hipHeight)) {
+    std::vector<double> displacement;
+    for (const Vec3& foot : feet[i]) displacement.push_back(foot.dot(ahead));
+    for (const double top : topsOf(displacement, kSwing * hipHeight)) {
       falls.push_back({body.legs()[i].end, top * frames.frameSeconds});
     }
   }

@@ -11,7 +11,7 @@ namespace limber {
 namespace {
 
 constexpr double kShortest = 1e-3;  // seconds; above 0, up to a frame; least length without footfalls; rounding only
-constexpr int kMostRounds = 60;     // 53 (bits of a double) and more: halving alone ends by then
+constexpr int kMaxRounds = 60;      // 53 (bits of a double) and more: halving alone ends by then
 
 }  // namespace
 
@@ -61,16 +61,16 @@ double GaitPhase::when(double phase) const {
   if (phase >= last) return seconds_.back() + (phase - last) / slopes_.back();
   const auto k = std::min(static_cast<std::size_t>(phase - first_), seconds_.size() - 2);
   double low = seconds_[k], high = seconds_[k + 1],
-         guess = low + (phase - first_ - static_cast<double>(k)) * (high - low);
-  for (int i = 0; i < kMostRounds; ++i) {
-    const double off = at(guess) - phase;
-    (off > 0 ? high : low) = guess;
-    const double slope = rate(guess), newton = guess - off / slope;
+         estimate = low + (phase - first_ - static_cast<double>(k)) * (high - low);
+  for (int i = 0; i < kMaxRounds; ++i) {
+    const double off = at(estimate) - phase;
+    (off > 0 ? high : low) = estimate;
+    const double slope = rate(estimate), newton = estimate - off / slope;
     const double next = slope > 0 && newton > low && newton < high ? newton : (low + high) / 2;
-    if (off == 0 || next == guess) break;
-    guess = next;
+    if (off == 0 || next == estimate) break;
+    estimate = next;
   }
-  return guess;
+  return estimate;
 }
 
 }  // namespace limber

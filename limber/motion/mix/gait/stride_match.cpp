@@ -66,16 +66,16 @@ std::vector<StridePhases> matchStrides(std::span<const Footfall> a, std::span<co
   std::vector<StridePhases> found = laidOnto({a.begin(), a.end()}, {b.begin(), b.end()});
   // One order: but for one of the ends they agree wherever they lie.
   if (!found.empty() && found.front().matched + 1 >= std::min(a.size(), b.size())) return found;
-  Falls mostA, mostB;
+  Falls maxA, maxB;
   std::set<Index> feet;
   for (const Footfall& fall : a) feet.insert(fall.foot);
   for (const Index foot : feet) {
     Falls ofA = ofFoot(a, foot), ofB = ofFoot(b, foot);
-    if (std::min(ofA.size(), ofB.size()) <= std::min(mostA.size(), mostB.size())) continue;
-    mostA = std::move(ofA);
-    mostB = std::move(ofB);
+    if (std::min(ofA.size(), ofB.size()) <= std::min(maxA.size(), maxB.size())) continue;
+    maxA = std::move(ofA);
+    maxB = std::move(ofB);
   }
-  return laidOnto(mostA, mostB);
+  return laidOnto(maxA, maxB);
 }
 
 }  // namespace limber

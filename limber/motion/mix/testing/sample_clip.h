@@ -37,7 +37,7 @@ inline Clip slowed(Clip clip, float factor) {
 // metres a second on average: of the toes, without any of limber's detectors.
 inline double toesSlide(const Skeleton& skeleton, const Clip& clip, double rate = 60) {
   const auto frames = jointPaths(skeleton, clip, rate);
-  double way = 0, seconds = 0;
+  double pathLength = 0, seconds = 0;
   for (const char* name : {"leftToes", "rightToes"}) {
     const Index toes = skeleton.find(name).value();
     double lowest = frames[0][toes].y();
@@ -46,11 +46,11 @@ inline double toesSlide(const Skeleton& skeleton, const Clip& clip, double rate 
       const Vec3 over = frames[f][toes] - frames[f - 3][toes];
       if (frames[f][toes].y() > lowest + 0.02 || over.norm() > 0.02) continue;
       const Vec3 step = frames[f][toes] - frames[f - 1][toes];
-      way += std::hypot(step.x(), step.z());
+      pathLength += std::hypot(step.x(), step.z());
       seconds += 1 / rate;
     }
   }
-  return seconds > 0 ? way / seconds : 0;
+  return seconds > 0 ? pathLength / seconds : 0;
 }
 
 // Root mean square third difference of all joints, metres a second cubed.

@@ -12,18 +12,18 @@
 namespace limber::testing {
 
 // A chain of capsules through places, from one radius to the other; on both sides where it is off the middle.
-inline void addChain(TriMesh& mesh, const std::vector<Vec3>& places, double first, double last) {
+inline void addChain(TriMesh& mesh, const std::vector<Vec3>& positions, double first, double last) {
   constexpr int kSteps = 6;  // between two places
-  const double count = static_cast<double>(kSteps * (places.size() - 1));
+  const double count = static_cast<double>(kSteps * (positions.size() - 1));
   for (const double side : {1.0, -1.0}) {
     double done = 0;
     bool isPaired = false;
-    for (std::size_t i = 0; i + 1 < places.size(); ++i) {
-      isPaired = isPaired || places[i + 1].x() != 0;
+    for (std::size_t i = 0; i + 1 < positions.size(); ++i) {
+      isPaired = isPaired || positions[i + 1].x() != 0;
       if (side < 0 && !isPaired) continue;
       for (int s = 0; s < kSteps; ++s, done += 1) {
         const auto at = [&](int step) {
-          return Vec3((places[i] + static_cast<double>(step) / kSteps * (places[i + 1] - places[i]))
+          return Vec3((positions[i] + static_cast<double>(step) / kSteps * (positions[i + 1] - positions[i]))
                           .cwiseProduct(Vec3(side, 1, 1)));
         };
         addCapsule(mesh, at(s), at(s + 1), first + (last - first) * done / count);

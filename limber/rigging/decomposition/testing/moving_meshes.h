@@ -104,9 +104,9 @@ inline KnownMotion scatteredPieces(Index pieces, Index frames = 12) {
     }
     for (Index f = 0; f < frames; ++f) {
       const Quat turn = Quat(Eigen::AngleAxisd(random.uniform(-1, 1), anywhere(1).normalized()));
-      const Vec3 place = middle + anywhere(0.3);
+      const Vec3 position = middle + anywhere(0.3);
       known.motions.motions.push_back(
-          rigidMotion(Eigen::Translation3d(place) * Affine(turn) * Eigen::Translation3d(-middle)));
+          rigidMotion(Eigen::Translation3d(position) * Affine(turn) * Eigen::Translation3d(-middle)));
     }
   }
   return known;

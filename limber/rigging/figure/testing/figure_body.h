@@ -115,18 +115,18 @@ inline TriMesh figureBody(const Figure& figure) {
   oval(waist + 1.3 * down, figure.pelvis, 0.05, 0.03);
   addTube(mesh, trunk);
   for (int limb = 0; limb < kFigureLimbs; ++limb) {
-    const FigureLimbPlaces places = figure.places(limb);
+    const LimbPositions positions = figure.positions(limb);
     const FigureLimb& bones = figure.limbs[limb];
     const bool leg = isLeg(limb);
     const double upper = leg ? 0.046 : 0.029, lower = leg ? 0.03 : 0.023;
-    const Vec3 start = places.root + (leg ? 0.3 : 0.0) * (places.middle - places.root);
+    const Vec3 start = positions.root + (leg ? 0.3 : 0.0) * (positions.middle - positions.root);
     if (!leg) {
       const Vec3 inside = figure.chest.col(0) * sideOf(limb);
-      testing::addCapsule(mesh, places.root - 0.03 * size * inside, places.root, 0.036 * size);
+      testing::addCapsule(mesh, positions.root - 0.03 * size * inside, positions.root, 0.036 * size);
     }
-    testing::addCapsule(mesh, start, places.middle, upper * size);
-    testing::addCapsule(mesh, places.middle, places.ankle, lower * size);
-    testing::addCapsule(mesh, places.ankle, places.tip - 0.02 * size * bones.end, 0.02 * size);
+    testing::addCapsule(mesh, start, positions.middle, upper * size);
+    testing::addCapsule(mesh, positions.middle, positions.ankle, lower * size);
+    testing::addCapsule(mesh, positions.ankle, positions.tip - 0.02 * size * bones.end, 0.02 * size);
   }
   return mesh;
 }

@@ -16,7 +16,7 @@ namespace limber::testing {
 struct PersonJoint {
   const char* name;
   int parent;
-  Vec3 place, end;  // of its bone
+  Vec3 position, end;  // of its bone
   double radius;
 };
 
@@ -40,22 +40,22 @@ inline const std::vector<PersonJoint>& personJoints() {
 }
 
 inline double distanceToBone(const PersonJoint& bone, const Vec3& p) {
-  const Vec3 along = bone.end - bone.place;
-  const double t = std::clamp(along.dot(p - bone.place) / along.squaredNorm(), 0.0, 1.0);
-  return (bone.place + t * along - p).norm() - bone.radius;
+  const Vec3 along = bone.end - bone.position;
+  const double t = std::clamp(along.dot(p - bone.position) / along.squaredNorm(), 0.0, 1.0);
+  return (bone.position + t * along - p).norm() - bone.radius;
 }
 
 // Fifteen capsules that lie in each other, each a piece of its own; a vertex follows the two bones that are nearest.
 inline RiggedBody capsulePerson() {
   RiggedBody body;
   for (const PersonJoint& bone : personJoints()) {
-    addCapsule(body.mesh, bone.place, bone.end, bone.radius);
+    addCapsule(body.mesh, bone.position, bone.end, bone.radius);
     Joint joint;
     joint.name = bone.name;
     if (bone.parent >= 0) joint.parent = static_cast<Index>(bone.parent);
     const Vec3 above =
-        bone.parent < 0 ? Vec3(Vec3::Zero()) : personJoints()[static_cast<std::size_t>(bone.parent)].place;
-    joint.rest.translation = bone.place - above;
+        bone.parent < 0 ? Vec3(Vec3::Zero()) : personJoints()[static_cast<std::size_t>(bone.parent)].position;
+    joint.rest.translation = bone.position - above;
     body.skeleton.joints.push_back(joint);
   }
   body.weights.slots = 2;
@@ -73,16 +73,16 @@ inline RiggedBody capsulePerson() {
   return body;
 }
 
-inline std::vector<Vec3> jointPlaces(const Skeleton& skeleton) {
-  std::vector<Vec3> places;
-  for (const Affine& global : restGlobals(skeleton)) places.push_back(global.translation());
-  return places;
+inline std::vector<Vec3> jointPositions(const Skeleton& skeleton) {
+  std::vector<Vec3> positions;
+  for (const Affine& global : restGlobals(skeleton)) positions.push_back(global.translation());
+  return positions;
 }
 
 // All joints as landmarks, at `places`.
-inline std::vector<JointLandmark> landmarksAt(const std::vector<Vec3>& places) {
+inline std::vector<JointLandmark> landmarksAt(const std::vector<Vec3>& positions) {
   std::vector<JointLandmark> landmarks;
-  for (Index j = 0; j < places.size(); ++j) landmarks.push_back({j, places[j]});
+  for (Index j = 0; j < positions.size(); ++j) landmarks.push_back({j, positions[j]});
   return landmarks;
 }
 

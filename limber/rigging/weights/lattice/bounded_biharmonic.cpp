@@ -39,17 +39,17 @@ LatticeGraph graphOf(const InsideLattice& lattice) {
 }
 
 // What is held where bones pass: by cell, for each joint that has a part of it.
-struct HeldCells {
+struct PinnedCells {
   struct Part {
     Index cell;
     double part;
   };
   std::vector<Index> joints;             // ascending: those that hold any cell
   std::vector<std::vector<Part>> parts;  // by joint of these; cells ascending
-  std::vector<bool> held;                // by cell
+  std::vector<bool> pinned;              // by cell
 };
 
-HeldCells holdCells(InsideLattice& lattice, std::span<const Bone> bones) {
+PinnedCells holdCells(InsideLattice& lattice, std::span<const Bone> bones) {
   std::map<Index, std::map<Index, double>> byJoint;  // how many places of its bones lie in a cell
   for (Bone bone : bones) {
     bone.radius = 0;
@@ -57,22 +57,22 @@ HeldCells holdCells(InsideLattice& lattice, std::span<const Bone> bones) {
   }
   std::vector<double> all(lattice.cellCount(), 0);
   for (const auto& [joint, cells] : byJoint) {
-    for (const auto& [cell, places] : cells) all[cell] += places;
+    for (const auto& [cell, positions] : cells) all[cell] += positions;
   }
-  HeldCells result;
+  PinnedCells result;
   for (const auto& [joint, cells] : byJoint) {
     result.joints.push_back(joint);
     result.parts.emplace_back();
-    for (const auto& [cell, places] : cells) result.parts.back().push_back({cell, places / all[cell]});
+    for (const auto& [cell, positions] : cells) result.parts.back().push_back({cell, positions / all[cell]});
   }
-  for (const double places : all) result.held.push_back(places > 0);
+  for (const double positions : all) result.pinned.push_back(positions > 0);
   return result;
 }
 
 // One of the two lattices that weights are found on, one after the other.
 struct Level {
   InsideLattice lattice;
-  HeldCells cells;
+  PinnedCells cells;
   LatticeGraph graph;
 
   Level(const TriMesh& mesh, const InsideQueries& queries, std::span<const Bone> bones, Index resolution)
@@ -100,24 +100,24 @@ std::vector<Index> edgesFrom(const LatticeGraph& graph, std::vector<Index> front
 }
 
 // Nodes that a joint holds have its part there, all others 0.
-std::vector<double> heldWeights(const Level& level, std::size_t joint) {
+std::vector<double> pinnedWeights(const Level& level, std::size_t joint) {
   std::vector<double> w(level.graph.nodeCount(), 0);
-  for (const HeldCells::Part& held : level.cells.parts[joint]) w[held.cell] = held.part;
+  for (const PinnedCells::Part& pinned : level.cells.parts[joint]) w[pinned.cell] = pinned.part;
   return w;
 }
 
 // Where the first descent begins: what the weights of a bar between two bones are, by the ways to the joint's own cells
 // and to those of others.
-std::vector<double> weightsByWays(const Level& level, std::size_t joint) {
-  std::vector<double> w = heldWeights(level, joint);
+std::vector<double> weightsByDistance(const Level& level, std::size_t joint) {
+  std::vector<double> w = pinnedWeights(level, joint);
   std::vector<Index> own, others;
-  for (const HeldCells::Part& held : level.cells.parts[joint]) own.push_back(held.cell);
+  for (const PinnedCells::Part& pinned : level.cells.parts[joint]) own.push_back(pinned.cell);
   for (Index node = 0; node < w.size(); ++node) {
-    if (level.cells.held[node] && w[node] < 1) others.push_back(node);
+    if (level.cells.pinned[node] && w[node] < 1) others.push_back(node);
   }
   const std::vector<Index> toOwn = edgesFrom(level.graph, own), toOthers = edgesFrom(level.graph, others);
   for (Index node = 0; node < w.size(); ++node) {
-    if (level.cells.held[node] || toOwn[node] == kNoIndex) continue;
+    if (level.cells.pinned[node] || toOwn[node] == kNoIndex) continue;
     const double along = toOthers[node] == kNoIndex ? 1 : toOthers[node] / (1.0 * toOthers[node] + toOwn[node]);
     const double t = std::clamp((along - kSurely) / (1 - 2 * kSurely), 0.0, 1.0);
     w[node] = t * t * (3 - 2 * t);
@@ -128,9 +128,9 @@ std::vector<double> weightsByWays(const Level& level, std::size_t joint) {
 // By cell of the fine lattice those of the coarse one round it. Cells that no bone reaches stay 0.
 std::vector<double> interpolated(const Level& fine, std::size_t joint, const std::vector<bool>& reached,
                                  const Level& coarse, const LatticeWeights& weights, std::size_t column) {
-  std::vector<double> w = heldWeights(fine, joint);
+  std::vector<double> w = pinnedWeights(fine, joint);
   for (Index node = 0; node < w.size(); ++node) {
-    if (fine.cells.held[node] || !reached[node]) continue;
+    if (fine.cells.pinned[node] || !reached[node]) continue;
     std::array<Index, 8> cells;
     std::array<double, 8> parts;
     const int count = coarse.lattice.cellsRound(fine.lattice.position(node), cells, parts);
@@ -145,12 +145,12 @@ std::vector<double> interpolated(const Level& fine, std::size_t joint, const std
 }
 
 std::vector<bool> reachedCells(const Level& level) {
-  std::vector<Index> held;
+  std::vector<Index> pinned;
   for (Index node = 0; node < level.graph.nodeCount(); ++node) {
-    if (level.cells.held[node]) held.push_back(node);
+    if (level.cells.pinned[node]) pinned.push_back(node);
   }
   std::vector<bool> reached;
-  for (const Index edges : edgesFrom(level.graph, held)) reached.push_back(edges != kNoIndex);
+  for (const Index edges : edgesFrom(level.graph, pinned)) reached.push_back(edges != kNoIndex);
   return reached;
 }
 
@@ -167,7 +167,7 @@ LatticeWeights solveJoints(const Level& level, double tolerance, Progress& progr
     parallelFor(std::min<std::size_t>(kJointsAtOnce, joints - first), 1, [&](std::size_t from, std::size_t to) {
       for (std::size_t j = first + from; j < first + to; ++j) {
         std::vector<double> w = begin(j);
-        minimizeBoundedBiharmonic(level.graph, level.cells.held, w, options);
+        minimizeBoundedBiharmonic(level.graph, level.cells.pinned, w, options);
         for (std::size_t node = 0; node < w.size(); ++node) {
           result.weights[node * joints + j] = static_cast<float>(w[node]);
         }
@@ -181,7 +181,7 @@ LatticeWeights solveJoints(const Level& level, double tolerance, Progress& progr
 // finer ones of a body, and coarser ones of a sheet, have as many; others fewer.
 Index resolutionFor(double cells, Index most, Index other, Index otherCells) {
   const double ratio = cells / std::max<Index>(1, otherCells), finer = ratio > 1 ? std::cbrt(ratio) : std::sqrt(ratio);
-  return static_cast<Index>(std::clamp<double>(other * finer, InsideLattice::kLeastCells, most));
+  return static_cast<Index>(std::clamp<double>(other * finer, InsideLattice::kMinCells, most));
 }
 
 // Weights that are not above the least count as none.
@@ -228,22 +228,22 @@ WeightResult boundedBiharmonicWeightsWith(const BoundedBiharmonicOptions& biharm
 
   progress.step("lattice");
   const InsideQueries queries(mesh);
-  const Index first = cellsForNodes(mesh, kCoarseNodes, InsideLattice::kLeastCells, biharmonic.mostCells);
+  const Index first = cellsForNodes(mesh, kCoarseNodes, InsideLattice::kMinCells, biharmonic.maxCells);
   auto coarse = std::make_unique<Level>(mesh, queries, bones, first);
   const Index cells = coarse->graph.nodeCount(),
-              resolution = resolutionFor(biharmonic.cells, biharmonic.mostCells, first, cells);
+              resolution = resolutionFor(biharmonic.cells, biharmonic.maxCells, first, cells);
   const Level fine(mesh, queries, bones, resolution);
   if (first > kCoarseEnough * resolution) {
-    coarse = std::make_unique<Level>(mesh, queries, bones, std::max(InsideLattice::kLeastCells, resolution / 2));
+    coarse = std::make_unique<Level>(mesh, queries, bones, std::max(InsideLattice::kMinCells, resolution / 2));
   }
 
   progress.step("smoothest weights");
   const LatticeWeights begin = solveJoints(*coarse, kCoarseTolerance * biharmonic.tolerance, progress,
-                                           [&](std::size_t joint) { return weightsByWays(*coarse, joint); });
+                                           [&](std::size_t joint) { return weightsByDistance(*coarse, joint); });
   const std::vector<bool> reached = reachedCells(fine);
   const LatticeWeights weights = solveJoints(fine, biharmonic.tolerance, progress, [&](std::size_t joint) {
     const auto column = std::lower_bound(begin.joints.begin(), begin.joints.end(), fine.cells.joints[joint]);
-    if (column == begin.joints.end() || *column != fine.cells.joints[joint]) return weightsByWays(fine, joint);
+    if (column == begin.joints.end() || *column != fine.cells.joints[joint]) return weightsByDistance(fine, joint);
     return interpolated(fine, joint, reached, *coarse, begin, static_cast<std::size_t>(column - begin.joints.begin()));
   });
 

@@ -9,7 +9,7 @@ namespace limber {
 
 struct BoundedBiharmonicOptions {
   double cells = 4'000;     // of the inside, about
-  Index mostCells = 128;    // along the longest side, 8 to 512
+  Index maxCells = 128;     // along the longest side, 8 to 512
   double tolerance = 2e-4;  // of weights on the lattice, see BiharmonicOptions; less is none
 };
 

@@ -96,9 +96,9 @@ TEST(BoundedBiharmonic, CrossesNoGap) {
   const std::vector<Bone> bones = {{0, {-0.18, 0, 0}, {-0.18, 0.4, 0}, 0}, {1, {0.18, 0, 0}, {0.18, 0.4, 0}, 0}};
   const SkinWeights weights = smoothWeightsOf(mesh, bones, 3000).weights;
   for (Index v = 0; v < mesh.vertexCount(); ++v) {
-    const Vec3 place = mesh.position(v);
-    if (place.y() > 0.1) {
-      EXPECT_LT(weightAt(weights, v, place.x() < 0 ? 1 : 0), 0.01);
+    const Vec3 position = mesh.position(v);
+    if (position.y() > 0.1) {
+      EXPECT_LT(weightAt(weights, v, position.x() < 0 ? 1 : 0), 0.01);
     }
   }
 }

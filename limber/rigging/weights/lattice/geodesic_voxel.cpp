@@ -17,12 +17,12 @@ namespace {
 constexpr double kUnitOfFalloff = 0.01;                                // longest sides
 constexpr int kUnit = 10;                                              // of a way, to a cell
 constexpr std::array<std::uint32_t, 4> kStepLength = {0, 10, 14, 17};  // by the number of axes that a step goes along
-constexpr double kMostMissing = 0.5;  // of the cells round a vertex: what fewer reach is far
+constexpr double kMaxMissing = 0.5;  // of the cells round a vertex: what fewer reach is far
 
 // The cells of the inside as a graph, each with the joints nearest to it.
-class VoxelWays {
+class VoxelDistances {
  public:
-  VoxelWays(InsideLattice& lattice, Index followed) : lattice_(lattice), followed_(followed) {}
+  VoxelDistances(InsideLattice& lattice, Index followed) : lattice_(lattice), followed_(followed) {}
 
   // The cells that a bone passes through, or fills, whether they are inside or not.
   void addBone(const Bone& bone) {
@@ -37,23 +37,23 @@ class VoxelWays {
   void run(Progress& progress) {
     const std::vector<Step> steps = allSteps();
     joints_.assign(std::size_t{lattice_.cellCount()} * followed_, kNoIndex);
-    ways_.assign(std::size_t{lattice_.cellCount()} * followed_, 0);
+    distances_.assign(std::size_t{lattice_.cellCount()} * followed_, 0);
     counts_.assign(lattice_.cellCount(), 0);
     constexpr std::size_t kRing = 18;  // longer than any step
     std::array<std::vector<Arrival>, kRing> ring;
     ring[0] = std::move(seeds_);
     std::size_t waiting = ring[0].size();
-    for (std::uint32_t way = 0; waiting > 0; ++way) {
+    for (std::uint32_t distance = 0; waiting > 0; ++distance) {
       std::vector<Arrival> now;
-      now.swap(ring[way % kRing]);
+      now.swap(ring[distance % kRing]);
       waiting -= now.size();
-      if (way % 256 == 0) progress.update(0);
+      if (distance % 256 == 0) progress.update(0);
       for (const Arrival& arrival : now) {
-        if (!settle(arrival, way)) continue;
+        if (!settle(arrival, distance)) continue;
         for (const Step& step : steps) {
           const Index next = lattice_.neighbor(arrival.cell, step.offset);
           if (next == kNoIndex || !isOpen(next, arrival.joint)) continue;
-          ring[(way + step.length) % kRing].push_back({next, arrival.joint});
+          ring[(distance + step.length) % kRing].push_back({next, arrival.joint});
           ++waiting;
         }
       }
@@ -62,17 +62,17 @@ class VoxelWays {
 
   // The ways (longest sides) from a place to joints, from those of the cells round it; few of the far ones.
   template <class Take>
-  void forEachWay(const Vec3& place, const Take& take) const {
+  void forEachDistance(const Vec3& position, const Take& take) const {
     std::array<Index, 8> cells;
-    std::array<double, 8> shares;
-    const int count = lattice_.cellsRound(place, cells, shares);
+    std::array<double, 8> fractions;
+    const int count = lattice_.cellsRound(position, cells, fractions);
     std::array<Index, 64> joints;
     std::array<double, 64> sums, reached;
     std::size_t known = 0;
     double all = 0;
     for (int i = 0; i < count; ++i) {
       if (counts_[cells[i]] == 0) continue;
-      all += shares[i];
+      all += fractions[i];
       for (Index k = 0; k < counts_[cells[i]]; ++k) {
         const std::size_t slot = std::size_t{cells[i]} * followed_ + k;
         const Index joint = joints_[slot];
@@ -84,12 +84,12 @@ class VoxelWays {
           sums[known] = reached[known] = 0;
           ++known;
         }
-        sums[j] += shares[i] * ways_[slot];
-        reached[j] += shares[i];
+        sums[j] += fractions[i] * distances_[slot];
+        reached[j] += fractions[i];
       }
     }
     for (std::size_t j = 0; j < known; ++j) {
-      if (reached[j] < kMostMissing * all) continue;
+      if (reached[j] < kMaxMissing * all) continue;
       take(joints[j], std::max(lattice_.spacing() / 2, lattice_.spacing() / kUnit * sums[j] / reached[j]));
     }
   }
@@ -123,20 +123,20 @@ class VoxelWays {
     return std::find(first, first + count, joint) == first + count;
   }
 
-  bool settle(const Arrival& arrival, std::uint32_t way) {
+  bool settle(const Arrival& arrival, std::uint32_t distance) {
     if (!isOpen(arrival.cell, arrival.joint)) return false;
     const std::size_t slot = std::size_t{arrival.cell} * followed_ + counts_[arrival.cell]++;
     joints_[slot] = arrival.joint;
-    ways_[slot] = way;
+    distances_[slot] = distance;
     return true;
   }
 
   InsideLattice& lattice_;
   Index followed_;
   std::vector<Arrival> seeds_;
-  std::vector<Index> joints_;         // followed_ for each cell, nearest first
-  std::vector<std::uint32_t> ways_;   // likewise, in tenths of a spacing
-  std::vector<std::uint8_t> counts_;  // by cell: joints that came
+  std::vector<Index> joints_;             // followed_ for each cell, nearest first
+  std::vector<std::uint32_t> distances_;  // likewise, in tenths of a spacing
+  std::vector<std::uint8_t> counts_;      // by cell: joints that came
 };
 
 }  // namespace
@@ -151,19 +151,19 @@ WeightResult geodesicVoxelWeightsWith(const GeodesicVoxelOptions& voxels, const 
   checkWeightArguments(mesh, bones, options);
   progress.step("voxels");
   InsideLattice lattice(mesh, InsideQueries(mesh),
-                        cellsForNodes(mesh, voxels.nodes, InsideLattice::kLeastCells, voxels.mostCells));
+                        cellsForNodes(mesh, voxels.nodes, InsideLattice::kMinCells, voxels.maxCells));
 
   progress.step("ways to bones");
-  VoxelWays ways(lattice, std::max<Index>(4, options.maxInfluences + 2));
-  for (const Bone& bone : bones) ways.addBone(bone);
-  ways.run(progress);
+  VoxelDistances distances(lattice, std::max<Index>(4, options.maxInfluences + 2));
+  for (const Bone& bone : bones) distances.addBone(bone);
+  distances.run(progress);
 
   progress.step("weights");
   InfluenceTable table(mesh.vertexCount(), options.maxInfluences);
   parallelFor(mesh.vertexCount(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
-      ways.forEachWay(mesh.position(static_cast<Index>(v)), [&](Index joint, double way) {
-        const double d = way / kUnitOfFalloff, far = (1 - voxels.falloff) * d + voxels.falloff * d * d;
+      distances.forEachDistance(mesh.position(static_cast<Index>(v)), [&](Index joint, double distance) {
+        const double d = distance / kUnitOfFalloff, far = (1 - voxels.falloff) * d + voxels.falloff * d * d;
         table.offer(v, joint, static_cast<float>(1 / (far * far)));
       });
     }

@@ -8,7 +8,7 @@
 namespace limber {
 
 struct GeodesicVoxelOptions {
-  Index mostCells = 128;   // of the grid along the longest side, 8 to 512
+  Index maxCells = 128;    // of the grid along the longest side, 8 to 512
   double nodes = 400'000;  // of the grid, about: bulky models get fewer cells
   double falloff = 0.2;    // 0 to 1: how much faster than with distance itself weights fall off far from a bone
 };

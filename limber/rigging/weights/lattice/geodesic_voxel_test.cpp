@@ -38,7 +38,7 @@ WeightResult voxelWeightsOf(const TriMesh& mesh, const std::vector<Bone>& bones,
 }
 
 // The shortest way in a grid whose steps are 10, 14 and 17 tenths, in its spacings.
-double chamferWay(const Vec3& between) {
+double chamferDistance(const Vec3& between) {
   std::array<double, 3> along = {std::abs(between.x()), std::abs(between.y()), std::abs(between.z())};
   std::sort(along.begin(), along.end());
   return 1.7 * along[0] + 1.4 * (along[1] - along[0]) + along[2] - along[1];
@@ -66,8 +66,8 @@ TEST(GeodesicVoxel, WaysInAConvexBodyAreStraight) {
     for (Index v = 0; v < ball.vertexCount(); ++v) {
       std::array<double, 2> pull;
       for (int j = 0; j < 2; ++j) {
-        const double way = 100 * chamferWay(ball.position(v) - at[j]);
-        pull[j] = 1 / std::pow((1 - falloff) * way + falloff * way * way, 2);
+        const double pathLength = 100 * chamferDistance(ball.position(v) - at[j]);
+        pull[j] = 1 / std::pow((1 - falloff) * pathLength + falloff * pathLength * pathLength, 2);
       }
       // Seeds and vertices lie up to half a cell from where they count.
       EXPECT_NEAR(pullOf(weights, v, 0), pull[0] / (pull[0] + pull[1]), 0.08) << v << " " << falloff;
@@ -99,9 +99,9 @@ TEST(GeodesicVoxel, NoWeightLeapsAGap) {
   const SkinWeights envelopes = envelopeWeights(horseshoe.mesh, horseshoe.bones, {}, progress).weights;
   double worst = 0, worstEnvelope = 0;
   for (Index v = 0; v < horseshoe.mesh.vertexCount(); ++v) {
-    const Vec3 place = horseshoe.mesh.position(v);
-    if (place.y() < 0.1) continue;
-    const Index other = place.x() < 0 ? 1 : 0;
+    const Vec3 position = horseshoe.mesh.position(v);
+    if (position.y() < 0.1) continue;
+    const Index other = position.x() < 0 ? 1 : 0;
     worst = std::max(worst, pullOf(voxels, v, other));
     worstEnvelope = std::max(worstEnvelope, pullOf(envelopes, v, other));
   }
@@ -125,26 +125,26 @@ TEST(GeodesicVoxel, FacesThatAreTurnedOrOpenChangeLittle) {
 TEST(GeodesicVoxel, WaysAreTheShortestInTheLattice) {
   const Horseshoe horseshoe;
   GeodesicVoxelOptions voxels;
-  voxels.mostCells = 24;
+  voxels.maxCells = 24;
   Progress progress;
   const SkinWeights weights = geodesicVoxelWeightsWith(voxels, horseshoe.mesh, horseshoe.bones, {}, progress).weights;
 
   InsideLattice lattice(horseshoe.mesh, InsideQueries(horseshoe.mesh), 24);
   std::array<std::vector<Index>, 2> seeds;
   for (int j = 0; j < 2; ++j) seeds[j] = lattice.cellsAlong(horseshoe.bones[j]);
-  std::array<std::vector<double>, 2> ways;
+  std::array<std::vector<double>, 2> distances;
   for (int j = 0; j < 2; ++j) {
-    ways[j].assign(lattice.cellCount(), 1e9);
-    for (const Index cell : seeds[j]) ways[j][cell] = 0;
+    distances[j].assign(lattice.cellCount(), 1e9);
+    for (const Index cell : seeds[j]) distances[j][cell] = 0;
     for (bool shorter = true; shorter;) {
       shorter = false;
       for (Index cell = 0; cell < lattice.cellCount(); ++cell) {
         for (int n = 0; n < 27; ++n) {
           const int x = n % 3 - 1, y = n / 3 % 3 - 1, z = n / 9 - 1, axes = std::abs(x) + std::abs(y) + std::abs(z);
           const Index next = lattice.neighbor(cell, lattice.step(x, y, z));
-          const double way = ways[j][cell] + (axes == 1 ? 1 : axes == 2 ? 1.4 : 1.7);
-          if (axes == 0 || next == kNoIndex || way > ways[j][next] - 1e-9) continue;
-          ways[j][next] = way;
+          const double pathLength = distances[j][cell] + (axes == 1 ? 1 : axes == 2 ? 1.4 : 1.7);
+          if (axes == 0 || next == kNoIndex || pathLength > distances[j][next] - 1e-9) continue;
+          distances[j][next] = pathLength;
           shorter = true;
         }
       }
@@ -159,7 +159,7 @@ TEST(GeodesicVoxel, WaysAreTheShortestInTheLattice) {
       double all = 0, sum = 0;
       for (int i = 0; i < count; ++i) {
         all += parts[i];
-        sum += parts[i] * ways[j][cells[i]];
+        sum += parts[i] * distances[j][cells[i]];
       }
       const double d = 100 * lattice.spacing() * std::max(0.5, sum / all), far = 0.8 * d + 0.2 * d * d;
       pull[j] = 1 / (far * far);

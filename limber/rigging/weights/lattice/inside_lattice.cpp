@@ -19,7 +19,7 @@ constexpr Index kCoarsest = 8;          // spacings, the first cells that are lo
 constexpr double kMargin = 2.5;         // spacings from the mesh to the grid's border, at least
 constexpr double kWindingInside = 0.5;  // winding number from which a point lies inside
 constexpr double kThroughCell = 0.87;   // spacings: half the diagonal of a cell, which the surface passes through then
-constexpr double kPlaceStep = 0.5;      // spacings between places of a bone that are looked at
+constexpr double kSampleStep = 0.5;     // spacings between places of a bone that are looked at
 
 // Finds on an adaptive grid which nodes lie inside or near the surface, with as few questions to both trees as can be:
 // a ball round a node that the surface does not reach lies on one side of it as a whole, so its other nodes need not
@@ -33,7 +33,7 @@ class NodeSides {
         spacing_(spacing),
         size_(size),
         nodes_(std::size_t{size[0]} * size[1] * size[2]) {
-    std::vector<Place> asked;
+    std::vector<GridIndex> asked;
     for (Index z = 0; z < size_[2]; z += kCoarsest) {
       for (Index y = 0; y < size_[1]; y += kCoarsest) {
         for (Index x = 0; x < size_[0]; x += kCoarsest) asked.push_back({x, y, z});
@@ -53,22 +53,22 @@ class NodeSides {
   }
 
  private:
-  using Place = std::array<Index, 3>;
+  using GridIndex = std::array<Index, 3>;
   enum class Side : std::uint8_t { kUnknown, kOutside, kInside, kNear };
-  enum class State : std::uint8_t { kNew, kTold, kAsked };
+  enum class State : std::uint8_t { kNew, kKnown, kAsked };
   struct Node {
     float clear = 0;  // spacings: no surface within; of a node that is asked: what suffices to share the side told
     Side side = Side::kUnknown;
     State state = State::kNew;
   };
 
-  std::size_t at(const Place& p) const { return (std::size_t{p[2]} * size_[1] + p[1]) * size_[0] + p[0]; }
+  std::size_t at(const GridIndex& p) const { return (std::size_t{p[2]} * size_[1] + p[1]) * size_[0] + p[0]; }
 
-  void ask(const std::vector<Place>& places) {
-    parallelFor(places.size(), 256, [&](std::size_t begin, std::size_t end) {
+  void ask(const std::vector<GridIndex>& gridIndices) {
+    parallelFor(gridIndices.size(), 256, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        Node& node = nodes_[at(places[i])];
-        const Vec3 point = origin_ + spacing_ * Vec3(places[i][0], places[i][1], places[i][2]);
+        Node& node = nodes_[at(gridIndices[i])];
+        const Vec3 point = origin_ + spacing_ * Vec3(gridIndices[i][0], gridIndices[i][1], gridIndices[i][2]);
         const auto distance = static_cast<float>(queries_.surface->nearestPoint(point).distance / spacing_);
         if (distance < kThroughCell) {
           node.side = Side::kNear;
@@ -83,7 +83,7 @@ class NodeSides {
 
   // Looks at each cell of 2 * step, whose corners are known: tells the nodes at `step` in it their side, or has them
   // asked.
-  void refine(Index step, std::vector<Place>& asked) {
+  void refine(Index step, std::vector<GridIndex>& asked) {
     const Index cell = 2 * step;
     for (Index z = 0; z + cell < size_[2]; z += cell) {
       for (Index y = 0; y + cell < size_[1]; y += cell) {
@@ -92,7 +92,7 @@ class NodeSides {
     }
   }
 
-  void refineCell(const Place& low, Index step, std::vector<Place>& asked) {
+  void refineCell(const GridIndex& low, Index step, std::vector<GridIndex>& asked) {
     std::array<Node, 8> corners;
     bool inside = false, outside = false;
     for (Index c = 0; c < 8; ++c) {
@@ -103,10 +103,10 @@ class NodeSides {
     }
     const Side common = inside == outside ? Side::kUnknown : inside ? Side::kInside : Side::kOutside;
     for (Index n = 0; n < 27; ++n) {
-      const Place in = {n % 3, n / 3 % 3, n / 9};
+      const GridIndex in = {n % 3, n / 3 % 3, n / 9};
       if (in[0] != 1 && in[1] != 1 && in[2] != 1) continue;  // a corner
-      const Place place = {low[0] + in[0] * step, low[1] + in[1] * step, low[2] + in[2] * step};
-      Node& node = nodes_[at(place)];
+      const GridIndex position = {low[0] + in[0] * step, low[1] + in[1] * step, low[2] + in[2] * step};
+      Node& node = nodes_[at(position)];
       if (node.state == State::kAsked) {
         if (common == Side::kUnknown) node.side = common;
         continue;
@@ -124,11 +124,11 @@ class NodeSides {
         nearest = std::min(nearest, away);
       }
       if (common != Side::kUnknown && clear >= kThroughCell) {
-        if (node.state == State::kNew) node = {clear, common, State::kTold};
+        if (node.state == State::kNew) node = {clear, common, State::kKnown};
         continue;
       }
       node = {clear > 0 ? 0 : nearest, common, State::kAsked};
-      asked.push_back(place);
+      asked.push_back(position);
     }
   }
 
@@ -147,7 +147,7 @@ InsideQueries::InsideQueries(const TriMesh& mesh) {
 }
 
 InsideLattice::InsideLattice(const TriMesh& mesh, const InsideQueries& queries, Index resolution) {
-  if (resolution < kLeastCells || resolution > kMostCells) {
+  if (resolution < kMinCells || resolution > kMaxCells) {
     throw Error(ErrorCode::kBadArgument, fmt::format("a lattice of {} cells is asked for", resolution), {},
                 "8 to 512 are possible");
   }
@@ -187,7 +187,7 @@ Vec3 InsideLattice::position(Index cell) const {
 std::vector<Index> InsideLattice::cellsAlong(const Bone& bone) {
   std::vector<Index> cells;
   const double length = (bone.b - bone.a).norm();
-  const auto steps = static_cast<Index>(std::min(1e6, std::ceil(length / (kPlaceStep * spacing_))));
+  const auto steps = static_cast<Index>(std::min(1e6, std::ceil(length / (kSampleStep * spacing_))));
   for (Index i = 0; i <= steps; ++i) {
     addCellAt(bone.a + (steps > 0 ? static_cast<double>(i) / steps : 0) * (bone.b - bone.a), cells);
   }
@@ -204,10 +204,10 @@ std::vector<Index> InsideLattice::cellsAlong(const Bone& bone) {
   return cells;
 }
 
-void InsideLattice::addCellAt(const Vec3& place, std::vector<Index>& cells) {
+void InsideLattice::addCellAt(const Vec3& position, std::vector<Index>& cells) {
   std::array<Index, 3> at;
   for (int axis = 0; axis < 3; ++axis) {
-    const double steps = std::round((place[axis] - origin_[axis]) / spacing_);
+    const double steps = std::round((position[axis] - origin_[axis]) / spacing_);
     if (!(steps >= 1 && steps + 1 < size_[axis])) return;
     at[axis] = static_cast<Index>(steps);
   }
@@ -219,8 +219,8 @@ void InsideLattice::addCellAt(const Vec3& place, std::vector<Index>& cells) {
   cells.push_back(cellOf_[node]);
 }
 
-int InsideLattice::cellsRound(const Vec3& place, std::array<Index, 8>& cells, std::array<double, 8>& parts) const {
-  const Vec3 at = (place - origin_) / spacing_;
+int InsideLattice::cellsRound(const Vec3& position, std::array<Index, 8>& cells, std::array<double, 8>& parts) const {
+  const Vec3 at = (position - origin_) / spacing_;
   std::array<Index, 3> low;
   std::array<double, 3> part;
   for (int axis = 0; axis < 3; ++axis) {
@@ -230,17 +230,17 @@ int InsideLattice::cellsRound(const Vec3& place, std::array<Index, 8>& cells, st
   }
   int count = 0;
   for (Index corner = 0; corner < 8; ++corner) {
-    double share = 1;
+    double fraction = 1;
     std::array<Index, 3> node;
     for (Index axis = 0; axis < 3; ++axis) {
       const bool far = (corner >> axis & 1) != 0;
       node[axis] = low[axis] + far;
-      share *= far ? part[axis] : 1 - part[axis];
+      fraction *= far ? part[axis] : 1 - part[axis];
     }
     const Index cell = cellOf_[nodeAt(node[0], node[1], node[2])];
-    if (cell == kNoIndex || !(share > 0)) continue;
+    if (cell == kNoIndex || !(fraction > 0)) continue;
     cells[count] = cell;
-    parts[count++] = share;
+    parts[count++] = fraction;
   }
   return count;
 }

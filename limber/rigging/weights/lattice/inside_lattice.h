@@ -27,7 +27,7 @@ struct InsideQueries {
 // trees, in parallel.
 class InsideLattice {
  public:
-  static constexpr Index kLeastCells = 8, kMostCells = 512;  // along the longest side
+  static constexpr Index kMinCells = 8, kMaxCells = 512;  // along the longest side
 
   // resolution  cells along the longest side of modelBox, which the grid fills, kLeastCells to kMostCells
   // Throws Error kBadArgument for others, and for a mesh without triangles.
@@ -50,11 +50,11 @@ class InsideLattice {
   std::vector<Index> cellsAlong(const Bone& bone);
 
   // The cells among the eight nodes round a place, and their parts in linear interpolation. Returns how many.
-  int cellsRound(const Vec3& place, std::array<Index, 8>& cells, std::array<double, 8>& parts) const;
+  int cellsRound(const Vec3& point, std::array<Index, 8>& cells, std::array<double, 8>& parts) const;
 
  private:
   std::size_t nodeAt(Index x, Index y, Index z) const { return (std::size_t{z} * size_[1] + y) * size_[0] + x; }
-  void addCellAt(const Vec3& place, std::vector<Index>& cells);
+  void addCellAt(const Vec3& point, std::vector<Index>& cells);
 
   Vec3 origin_ = Vec3::Zero();
   double spacing_ = 1;

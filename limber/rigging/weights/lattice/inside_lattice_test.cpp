@@ -24,13 +24,13 @@ TEST_P(InsideLatticeOf, HoldsWhatIsInsideOrNear) {
   const InsideLattice lattice(mesh, queries, 20);
   Index wrong = 0, count = 0;
   for (Index cell = 0; cell < lattice.cellCount(); ++cell) {
-    const Vec3 place = lattice.position(cell);
-    const bool near = queries.surface->nearestPoint(place).distance < 0.87 * lattice.spacing();
-    wrong += !near && queries.winding->at(place) <= 0.5;
+    const Vec3 position = lattice.position(cell);
+    const bool near = queries.surface->nearestPoint(position).distance < 0.87 * lattice.spacing();
+    wrong += !near && queries.winding->at(position) <= 0.5;
     ++count;
     // All neighbors that should be there are.
     for (int axis = 0; axis < 3; ++axis) {
-      const Vec3 beside = place + lattice.spacing() * Vec3::Unit(axis);
+      const Vec3 beside = position + lattice.spacing() * Vec3::Unit(axis);
       const bool isNear = queries.surface->nearestPoint(beside).distance < 0.8699 * lattice.spacing();
       const Index next = lattice.neighbor(cell, lattice.step(axis == 0, axis == 1, axis == 2));
       if (isNear) {
@@ -59,9 +59,9 @@ TEST(InsideLattice, ABonesCellsLieOnIt) {
   const std::vector<Index> cells = lattice.cellsAlong(bone);
   ASSERT_FALSE(cells.empty());
   for (const Index cell : cells) {
-    const Vec3 place = lattice.position(cell);
-    EXPECT_LE(std::abs(place.y() - 0.1), 0.501 * lattice.spacing());
-    EXPECT_LE(std::abs(place.z()), 0.501 * lattice.spacing());
+    const Vec3 position = lattice.position(cell);
+    EXPECT_LE(std::abs(position.y() - 0.1), 0.501 * lattice.spacing());
+    EXPECT_LE(std::abs(position.z()), 0.501 * lattice.spacing());
   }
   EXPECT_LE(lattice.cellCount(), inside + 2);
   EXPECT_TRUE(lattice.cellsAlong({0, {90, 0, 0}, {91, 0, 0}, 0}).empty());
@@ -70,13 +70,13 @@ TEST(InsideLattice, ABonesCellsLieOnIt) {
 TEST(InsideLattice, PartsOfTheCellsRoundAPlaceAreItsInterpolation) {
   const TriMesh ball = testing::moved(testing::icosphere(2), {0.5f, 0.5f, 0.5f}, Vec3f::Zero());
   const InsideLattice lattice(ball, InsideQueries(ball), 16);
-  const Vec3 place(0.11, -0.07, 0.2);
+  const Vec3 position(0.11, -0.07, 0.2);
   std::array<Index, 8> cells;
   std::array<double, 8> parts;
-  ASSERT_EQ(lattice.cellsRound(place, cells, parts), 8);
+  ASSERT_EQ(lattice.cellsRound(position, cells, parts), 8);
   Vec3 sum = Vec3::Zero();
   for (int i = 0; i < 8; ++i) sum += parts[i] * lattice.position(cells[i]);
-  EXPECT_LT((sum - place).norm(), 1e-9);
+  EXPECT_LT((sum - position).norm(), 1e-9);
 }
 
 TEST(InsideLattice, RefusesWhatItCannotMake) {

@@ -18,7 +18,7 @@ constexpr Index kRound = 64;        // steps between looks at how much has chang
 constexpr Index kPatience = 4;      // rounds, from which on each begins with the minimum of all that is free
 constexpr int kReach = 6;           // edges that a window reaches beyond what may change
 constexpr double kNoPull = 1e-5;    // gradients that let no node go from its bound
-constexpr int kMostWindows = 8;     // the last ones add next to nothing
+constexpr int kMaxWindows = 8;      // the last ones add next to nothing
 constexpr double kOfLongest = 1.9;  // of 2, from which on a step along the gradient need not descend
 
 using Neighbors = std::array<Index, LatticeGraph::kDirections>;
@@ -247,7 +247,7 @@ void WindowProblem::minimizeFree() {
   cholesky.factorize(energy);
   std::vector<double> solution(free.size() * SparseCholesky::kColumns, 0);
   const auto at = [&](Index i) -> double& {
-    return solution[cholesky.place(i) * std::size_t{SparseCholesky::kColumns}];
+    return solution[cholesky.rowOf(i) * std::size_t{SparseCholesky::kColumns}];
   };
   for (Index i = 0; i < free.size(); ++i) at(i) = gradient_[free[i]];
   cholesky.solve(solution.data(), 1);
@@ -335,18 +335,18 @@ void gradientOf(const LatticeGraph& graph, std::span<const double> w, std::vecto
 }
 
 // Nodes that may change.
-std::vector<Index> pulledNodes(const LatticeGraph& graph, const std::vector<bool>& held, std::span<const double> w,
+std::vector<Index> pulledNodes(const LatticeGraph& graph, const std::vector<bool>& pinned, std::span<const double> w,
                                const std::vector<double>& gradient) {
   std::vector<Index> pulled;
   for (Index i = 0; i < graph.nodeCount(); ++i) {
-    if (held[i] || (w[i] <= 0 ? gradient[i] > -kNoPull : w[i] >= 1 && gradient[i] < kNoPull)) continue;
+    if (pinned[i] || (w[i] <= 0 ? gradient[i] > -kNoPull : w[i] >= 1 && gradient[i] < kNoPull)) continue;
     pulled.push_back(i);
   }
   return pulled;
 }
 
 // Those nodes and all within a few edges, ascending; marks them.
-std::vector<Index> widened(const LatticeGraph& graph, const std::vector<bool>& held, std::vector<Index> nodes,
+std::vector<Index> widened(const LatticeGraph& graph, const std::vector<bool>& pinned, std::vector<Index> nodes,
                            std::vector<char>& inside) {
   std::fill(inside.begin(), inside.end(), 0);
   for (const Index node : nodes) inside[node] = 1;
@@ -355,7 +355,7 @@ std::vector<Index> widened(const LatticeGraph& graph, const std::vector<bool>& h
     const std::size_t to = nodes.size();
     for (; from < to; ++from) {
       for (const Index next : graph.neighbors[nodes[from]]) {
-        if (next == kNoIndex || held[next] || inside[next]) continue;
+        if (next == kNoIndex || pinned[next] || inside[next]) continue;
         inside[next] = 1;
         nodes.push_back(next);
       }
@@ -367,20 +367,20 @@ std::vector<Index> widened(const LatticeGraph& graph, const std::vector<bool>& h
 
 }  // namespace
 
-Index minimizeBoundedBiharmonic(const LatticeGraph& graph, const std::vector<bool>& held, std::span<double> w,
+Index minimizeBoundedBiharmonic(const LatticeGraph& graph, const std::vector<bool>& pinned, std::span<double> w,
                                 const BiharmonicOptions& options) {
   std::vector<double> scratch(graph.nodeCount()), gradient(graph.nodeCount());
   std::vector<char> inWindow(graph.nodeCount(), 0);
   std::vector<Index> localOf(graph.nodeCount(), kNoIndex);
   Index steps = 0;
-  for (int round = 0; round < kMostWindows && steps < options.mostIterations; ++round) {
+  for (int round = 0; round < kMaxWindows && steps < options.maxIterations; ++round) {
     gradientOf(graph, w, scratch, gradient);
-    const std::vector<Index> pulled = pulledNodes(graph, held, w, gradient);
+    const std::vector<Index> pulled = pulledNodes(graph, pinned, w, gradient);
     const bool isNew = std::any_of(pulled.begin(), pulled.end(), [&](Index node) { return !inWindow[node]; });
     if (!isNew) break;
-    const std::vector<Index> window = widened(graph, held, pulled, inWindow);
+    const std::vector<Index> window = widened(graph, pinned, pulled, inWindow);
     WindowProblem problem(graph, window, w, gradient, localOf);
-    steps = problem.descend(options.tolerance, steps, options.mostIterations);
+    steps = problem.descend(options.tolerance, steps, options.maxIterations);
     problem.write(w);
   }
   return steps;

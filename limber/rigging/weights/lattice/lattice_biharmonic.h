@@ -19,8 +19,8 @@ struct LatticeGraph {
 };
 
 struct BiharmonicOptions {
-  double tolerance = 1e-4;       // ends when no value changes by more than this in a round of 64 steps
-  Index mostIterations = 10000;  // steps in all
+  double tolerance = 1e-4;      // ends when no value changes by more than this in a round of 64 steps
+  Index maxIterations = 10000;  // steps in all
 };
 
 // Minimises the sum of (L w)^2 over all nodes, where (L w)(i) is the sum of w(i) - w(k) over the neighbors k of i, and
@@ -38,7 +38,7 @@ struct BiharmonicOptions {
 // square. What a round leaves is kept only if it has less energy. It works within a few steps of where values are
 // neither 0 nor 1, and widens that as needed. Returns the steps taken. Cost: O(nodes between the bounds) a step, and a
 // factor of these for each round that begins with one.
-Index minimizeBoundedBiharmonic(const LatticeGraph& graph, const std::vector<bool>& held, std::span<double> w,
+Index minimizeBoundedBiharmonic(const LatticeGraph& graph, const std::vector<bool>& pinned, std::span<double> w,
                                 const BiharmonicOptions& options = {});
 
 }  // namespace limber

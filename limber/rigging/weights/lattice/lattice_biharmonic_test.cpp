@@ -43,13 +43,13 @@ Eigen::MatrixXd denseEnergy(const LatticeGraph& graph) {
 }
 
 // One node after the other to its best value within bounds, until nothing moves.
-std::vector<double> projectedGaussSeidel(const LatticeGraph& graph, const std::vector<bool>& held,
+std::vector<double> projectedGaussSeidel(const LatticeGraph& graph, const std::vector<bool>& pinned,
                                          std::vector<double> w) {
   const Eigen::MatrixXd energy = denseEnergy(graph);
   for (int sweep = 0; sweep < 100000; ++sweep) {
     double most = 0;
     for (Index i = 0; i < graph.nodeCount(); ++i) {
-      if (held[i]) continue;
+      if (pinned[i]) continue;
       double sum = 0;
       for (Index k = 0; k < graph.nodeCount(); ++k) sum += energy(i, k) * w[k];
       const double best = std::clamp(w[i] - sum / energy(i, i), 0.0, 1.0);
@@ -66,12 +66,12 @@ constexpr BiharmonicOptions kTight = {1e-9, 200000};
 TEST(LatticeBiharmonic, ABarBetweenTwoBonesIsTheCubicThroughThem) {
   const int n = 20;
   const LatticeGraph bar = boxGraph(n, 1, 1);
-  std::vector<bool> held(n, false);
-  held[0] = held[1] = held[n - 2] = held[n - 1] = true;
+  std::vector<bool> pinned(n, false);
+  pinned[0] = pinned[1] = pinned[n - 2] = pinned[n - 1] = true;
   std::vector<double> w(n, 0.5);
   w[0] = w[1] = 0;
   w[n - 2] = w[n - 1] = 1;
-  minimizeBoundedBiharmonic(bar, held, w, kTight);
+  minimizeBoundedBiharmonic(bar, pinned, w, kTight);
   // Fourth differences are 0 between; the cubic through two values at either end.
   const double at[4] = {0, 1, n - 2, n - 1}, value[4] = {0, 0, 1, 1};
   for (int x = 0; x < n; ++x) {
@@ -88,12 +88,12 @@ TEST(LatticeBiharmonic, ABarBetweenTwoBonesIsTheCubicThroughThem) {
 TEST(LatticeBiharmonic, StaysWithinBoundsBeyondABone) {
   // Held at 1 and 0 side by side: without bounds the line through them would go on.
   const LatticeGraph bar = boxGraph(16, 1, 1);
-  std::vector<bool> held(16, false);
-  held[7] = held[8] = true;
+  std::vector<bool> pinned(16, false);
+  pinned[7] = pinned[8] = true;
   std::vector<double> w(16, 0.5);
   w[7] = 1;
   w[8] = 0;
-  minimizeBoundedBiharmonic(bar, held, w, kTight);
+  minimizeBoundedBiharmonic(bar, pinned, w, kTight);
   for (int x = 0; x < 16; ++x) EXPECT_NEAR(w[x], x <= 7 ? 1 : 0, 1e-6) << x;
 }
 
@@ -102,16 +102,16 @@ TEST(LatticeBiharmonic, IsTheDenseMinimumFromAnywhere) {
     const LatticeGraph graph = boxGraph(size[0], size[1], size[2]);
     for (std::uint64_t seed = 0; seed < 3; ++seed) {
       limber::Random random(seed);
-      std::vector<bool> held(graph.nodeCount(), false);
+      std::vector<bool> pinned(graph.nodeCount(), false);
       std::vector<double> first(graph.nodeCount()), second(graph.nodeCount());
       for (Index i = 0; i < graph.nodeCount(); ++i) {
-        held[i] = i == 0 || random.uniform() < 0.08;
-        first[i] = held[i] ? std::round(random.uniform()) : random.uniform();
-        second[i] = held[i] ? first[i] : 0;
+        pinned[i] = i == 0 || random.uniform() < 0.08;
+        first[i] = pinned[i] ? std::round(random.uniform()) : random.uniform();
+        second[i] = pinned[i] ? first[i] : 0;
       }
-      const std::vector<double> expected = projectedGaussSeidel(graph, held, first);
-      minimizeBoundedBiharmonic(graph, held, first, kTight);
-      minimizeBoundedBiharmonic(graph, held, second, kTight);
+      const std::vector<double> expected = projectedGaussSeidel(graph, pinned, first);
+      minimizeBoundedBiharmonic(graph, pinned, first, kTight);
+      minimizeBoundedBiharmonic(graph, pinned, second, kTight);
       for (Index i = 0; i < graph.nodeCount(); ++i) {
         EXPECT_NEAR(first[i], expected[i], 2e-4) << size[2] << " " << seed << " " << i;
         EXPECT_NEAR(second[i], expected[i], 2e-4) << size[2] << " " << seed << " " << i;
@@ -122,15 +122,15 @@ TEST(LatticeBiharmonic, IsTheDenseMinimumFromAnywhere) {
 
 TEST(LatticeBiharmonic, EndsNearTheMinimumWithItsOwnTolerance) {
   const LatticeGraph graph = boxGraph(9, 9, 24);
-  std::vector<bool> held(graph.nodeCount(), false);
+  std::vector<bool> pinned(graph.nodeCount(), false);
   std::vector<double> w(graph.nodeCount(), 0);
   for (int z = 2; z < 22; ++z) {
-    held[(z * 9 + 4) * 9 + 4] = true;
+    pinned[(z * 9 + 4) * 9 + 4] = true;
     w[(z * 9 + 4) * 9 + 4] = z >= 8 && z < 15;
   }
   std::vector<double> tight = w;
-  const Index steps = minimizeBoundedBiharmonic(graph, held, w);
-  minimizeBoundedBiharmonic(graph, held, tight, kTight);
+  const Index steps = minimizeBoundedBiharmonic(graph, pinned, w);
+  minimizeBoundedBiharmonic(graph, pinned, tight, kTight);
   RecordProperty("steps", static_cast<int>(steps));
   for (Index i = 0; i < graph.nodeCount(); ++i) EXPECT_NEAR(w[i], tight[i], 4e-3) << i;
 }
@@ -138,14 +138,14 @@ TEST(LatticeBiharmonic, EndsNearTheMinimumWithItsOwnTolerance) {
 // A sheet whose edge belongs half to one joint and half to others, from nothing.
 Index stepsOfSheet(int width, std::vector<double>& w, const BiharmonicOptions& options) {
   const LatticeGraph graph = boxGraph(width, width, 2);
-  std::vector<bool> held(graph.nodeCount(), false);
+  std::vector<bool> pinned(graph.nodeCount(), false);
   w.assign(graph.nodeCount(), 0);
   for (int i = 0; i < width; ++i) {
-    held[i * width] = i > width / 2;
-    held[i] = i < width / 4;
-    if (held[i]) w[i] = 1;
+    pinned[i * width] = i > width / 2;
+    pinned[i] = i < width / 4;
+    if (pinned[i]) w[i] = 1;
   }
-  return minimizeBoundedBiharmonic(graph, held, w, options);
+  return minimizeBoundedBiharmonic(graph, pinned, w, options);
 }
 
 // Conjugate gradients alone need steps by the square of the width.

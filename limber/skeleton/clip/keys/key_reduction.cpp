@@ -22,9 +22,9 @@ constexpr double kFirstFactor = 0.5;          // of the tolerance, for each join
 constexpr double kMargin = 0.98;              // of the tolerance: what is between the frames has the rest
 constexpr double kShortStep = 32767;          // 16-bit fractions of 1
 constexpr double kLargestShortTurn = 6.2e-5;  // radians: rounding four numbers to these
-constexpr double kStillShare = 0.1;           // likewise: what a value may leave to be one key
-constexpr double kShortShare = 0.25;          // of the tolerance
-constexpr double kLeast = 1e-12;
+constexpr double kStillFraction = 0.1;        // likewise: what a value may leave to be one key
+constexpr double kShortFraction = 0.25;       // of the tolerance
+constexpr double kMin = 1e-12;
 
 enum class Part { kTranslation, kRotation, kScale };
 
@@ -69,9 +69,9 @@ std::vector<double> reaches(const Skeleton& skeleton, const CarriedPoints& carri
   std::vector<double> result(skeleton.jointCount(), 0);
   for (Index c = 0; c < skeleton.jointCount(); ++c) {
     for (const Vec3& point : carried.of[c]) {
-      const Vec3 place = globals[c] * point;
+      const Vec3 position = globals[c] * point;
       for (std::optional<Index> j = c; j; j = skeleton.joints[*j].parent) {
-        result[*j] = std::max(result[*j], (place - globals[*j].translation()).norm());
+        result[*j] = std::max(result[*j], (position - globals[*j].translation()).norm());
       }
     }
   }
@@ -146,7 +146,7 @@ class KeyReducer {
       : skeleton_(skeleton), clip_(clip), carried_(carried), options_(options) {
     reach_ = reaches(skeleton, carried);
     const double farthest = reach_.empty() ? 0 : *std::max_element(reach_.begin(), reach_.end());
-    short_ = options.shortRotations && kLargestShortTurn * farthest <= kShortShare * options.tolerance;
+    short_ = options.shortRotations && kLargestShortTurn * farthest <= kShortFraction * options.tolerance;
     findFrames();
     readTracks();
   }
@@ -156,7 +156,7 @@ class KeyReducer {
     for (const double part : {1.0, 0.95, 0.85, 0.6, 0.3}) {
       target_ = kMargin * part * options_.tolerance;
       chooseAll();
-      share();
+      alignKeys();
       result.clip = written();
       result.largestError = measured(result.clip);
       if (result.largestError <= options_.tolerance) break;
@@ -234,7 +234,7 @@ class KeyReducer {
   }
 
   void findStill(DenseTrack& dense) const {
-    const double most = kStillShare * options_.tolerance / std::max(dense.errorPerUnit, kLeast);
+    const double most = kStillFraction * options_.tolerance / std::max(dense.errorPerUnit, kMin);
     const Transform& rest = skeleton_.joints[dense.joint].rest;
     if (dense.part == Part::kRotation) {
       for (const Quat& value : {rest.rotation, dense.turns[dense.turns.size() / 2]}) {
@@ -297,7 +297,7 @@ class KeyReducer {
       // Late rounds go for what is valid; the first for what is good.
       const double aim = round + 1 < kRounds ? target_ : 0.9 * target_;
       for (Index j = 0; j < skeleton_.jointCount(); ++j) {
-        factor[j] *= std::clamp(std::pow(aim / std::max(off[j], kLeast), 0.8), 0.4, 1.6);
+        factor[j] *= std::clamp(std::pow(aim / std::max(off[j], kMin), 0.8), 0.4, 1.6);
       }
     }
     if (!best.empty()) return best;
@@ -308,7 +308,7 @@ class KeyReducer {
   TrackKeys chooseTrack(const DenseTrack& track, std::size_t first, std::size_t end, double tolerance) const {
     if (track.still) return *track.still;
     const std::span<const double> times(times_.data() + first, end - first);
-    const double unit = tolerance / std::max(track.errorPerUnit, kLeast);
+    const double unit = tolerance / std::max(track.errorPerUnit, kMin);
     TrackKeys keys;
     if (track.part == Part::kRotation) {
       const std::span<const Quat> turns(track.turns.data() + first, end - first);
@@ -336,12 +336,12 @@ class KeyReducer {
     return own;
   }
 
-  void share() {
+  void alignKeys() {
     std::vector<KeyFrames> wanted;
     for (const DenseTrack& track : tracks_) {
       if (!track.still) wanted.push_back({track.kept.frames, bytesPerKey(track)});
     }
-    const std::vector<std::vector<Index>> shared = shareFrames(wanted, static_cast<Index>(times_.size()));
+    const std::vector<std::vector<Index>> shared = alignKeyFrames(wanted, static_cast<Index>(times_.size()));
     shared_.clear();
     std::size_t next = 0;
     for (const DenseTrack& track : tracks_) shared_.push_back(track.still ? track.kept.frames : shared[next++]);

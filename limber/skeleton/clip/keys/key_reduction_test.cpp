@@ -31,12 +31,12 @@ struct Body {
       if (j > 0) joint.rest.translation = 0.25 * random.direction();
       skeleton.joints.push_back(joint);
     }
-    const std::vector<Vec3> places = restPositions(skeleton);
+    const std::vector<Vec3> points = restPositions(skeleton);
     weights.slots = 2;
     for (Index v = 0; v < 120; ++v) {
       const Index joint = v % 7, other = joint == 0 ? 1 : joint - 1;
       const auto weight = static_cast<float>(random.uniform(0.5, 1));
-      positions.push_back((places[joint] + 0.1 * random.direction()).cast<float>());
+      positions.push_back((points[joint] + 0.1 * random.direction()).cast<float>());
       weights.joints.insert(weights.joints.end(), {joint, other});
       weights.weights.insert(weights.weights.end(), {weight, 1 - weight});
     }
@@ -50,11 +50,11 @@ struct Body {
     const std::vector<Affine> skin = skinTransforms(skeleton, pose);
     std::vector<Vec3> result;
     for (Index v = 0; v < positions.size(); ++v) {
-      Vec3 place = Vec3::Zero();
+      Vec3 position = Vec3::Zero();
       for (Index s = 0; s < 2; ++s) {
-        place += weights.weightsOf(v)[s] * (skin[weights.jointsOf(v)[s]] * positions[v].cast<double>());
+        position += weights.weightsOf(v)[s] * (skin[weights.jointsOf(v)[s]] * positions[v].cast<double>());
       }
-      result.push_back(place);
+      result.push_back(position);
     }
     return result;
   }

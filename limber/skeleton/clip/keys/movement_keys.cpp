@@ -11,7 +11,7 @@ namespace {
 
 constexpr float kSameScale = 5e-7f;  // relative: the same but for rounding
 constexpr double kAside = 0.2113;    // of the time between two keys: where a cubic is farthest from its middle's line
-constexpr int kMostHalvings = 8;     // of the time between two keys
+constexpr int kMaxHalvings = 8;      // of the time between two keys
 
 std::vector<float> sorted(std::vector<float> times) {
   std::sort(times.begin(), times.end());
@@ -76,7 +76,7 @@ void MovementKeys::writeTo(Clip& clip, Index joint, bool changed) const {
 void MovementKeys::divide(const MovingTransform& movement, const Bound& bound, const Key& from, const Key& to,
                           int depth) {
   const float middle = from.time + (to.time - from.time) / 2;
-  if (depth == kMostHalvings || !(middle > from.time && middle < to.time)) return;
+  if (depth == kMaxHalvings || !(middle > from.time && middle < to.time)) return;
   const auto distance = [&](double time, const Transform& local) {
     const double u = (time - from.time) / (double{to.time} - from.time);
     const auto line = [&](const Vec3& a, const Vec3& b) { return Vec3((1 - u) * a + u * b); };

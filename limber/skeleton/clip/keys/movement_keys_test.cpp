@@ -19,15 +19,15 @@ TEST(MovementKeys, AreAsManyAsTheBoundTakes) {
   for (const double most : {1e-3, 1e-5}) {
     Clip clip;
     MovementKeys(round, {1, 0, 1, 0.5f}, 2, most).writeTo(clip, 3, true);
-    const Track<Vec3f>& places = clip.translations.at(0);
-    EXPECT_EQ(places.joint, 3U);
+    const Track<Vec3f>& positions = clip.translations.at(0);
+    EXPECT_EQ(positions.joint, 3U);
     EXPECT_EQ(clip.scales.at(0).times.size(), 1U);
     for (double seconds = 0; seconds <= 1; seconds += 0.0013) {
       const Transform wanted = round(seconds);
-      EXPECT_LT((sampleTrack(places, seconds) - wanted.translation).norm(), 2 * most + 1e-6);
+      EXPECT_LT((sampleTrack(positions, seconds) - wanted.translation).norm(), 2 * most + 1e-6);
       EXPECT_LT(sampleTrack(clip.rotations.at(0), seconds).angularDistance(wanted.rotation), most + 1e-6);
     }
-    EXPECT_LT(places.times.size(), most > 1e-4 ? 80U : 800U);
+    EXPECT_LT(positions.times.size(), most > 1e-4 ? 80U : 800U);
   }
 }
 

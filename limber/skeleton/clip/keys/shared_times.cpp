@@ -27,7 +27,7 @@ double savedByPairing(const Group& a, const Group& b) {
 
 }  // namespace
 
-std::vector<std::vector<Index>> shareFrames(const std::vector<KeyFrames>& tracks, Index frameCount) {
+std::vector<std::vector<Index>> alignKeyFrames(const std::vector<KeyFrames>& tracks, Index frameCount) {
   std::vector<Group> groups;
   for (std::size_t t = 0; t < tracks.size(); ++t) {
     Group group;

@@ -15,6 +15,6 @@ struct KeyFrames {
 // Sets of frames that contain those given, with as few bytes as greedy pairing finds: the two groups whose union saves
 // most become one, until none saves any. A list of times by itself costs about 110 bytes in a glTF document beside its
 // numbers. Cost: O(#tracks^2 * #frames / 64).
-std::vector<std::vector<Index>> shareFrames(const std::vector<KeyFrames>& tracks, Index frameCount);
+std::vector<std::vector<Index>> alignKeyFrames(const std::vector<KeyFrames>& tracks, Index frameCount);
 
 }  // namespace limber

@@ -22,7 +22,7 @@ double bytesOf(const std::vector<KeyFrames>& tracks, const std::vector<std::vect
   return bytes;
 }
 
-TEST(ShareFrames, TakesFewerBytesAndLosesNoKey) {
+TEST(AlignKeyFrames, TakesFewerBytesAndLosesNoKey) {
   testing::RandomValues random(7);
   std::vector<KeyFrames> tracks;
   std::vector<std::vector<Index>> own;
@@ -33,23 +33,23 @@ TEST(ShareFrames, TakesFewerBytesAndLosesNoKey) {
     tracks.push_back({{frames.begin(), frames.end()}, t % 2 == 0 ? 8u : 12u});
     own.push_back(tracks.back().frames);
   }
-  const std::vector<std::vector<Index>> shared = shareFrames(tracks, 200);
+  const std::vector<std::vector<Index>> shared = alignKeyFrames(tracks, 200);
   for (std::size_t t = 0; t < tracks.size(); ++t) {
     EXPECT_TRUE(std::includes(shared[t].begin(), shared[t].end(), own[t].begin(), own[t].end()));
   }
   EXPECT_LT(bytesOf(tracks, shared), bytesOf(tracks, own));
 }
 
-TEST(ShareFrames, OnlyWhatSaves) {
+TEST(AlignKeyFrames, OnlyWhatSaves) {
   const std::vector<Index> few = {0, 63, 64, 999};
   std::vector<Index> many;
   for (Index f = 0; f < 1000; f += 2) many.push_back(f);
   many.push_back(999);
-  const auto shared = shareFrames({{few, 12}, {many, 12}, {few, 8}}, 1000);
+  const auto shared = alignKeyFrames({{few, 12}, {many, 12}, {few, 8}}, 1000);
   EXPECT_EQ(shared[0], few);
   EXPECT_EQ(shared[1], many);
   EXPECT_EQ(shared[2], few);
-  EXPECT_TRUE(shareFrames({}, 10).empty());
+  EXPECT_TRUE(alignKeyFrames({}, 10).empty());
 }
 
 }  // namespace

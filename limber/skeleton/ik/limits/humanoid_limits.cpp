@@ -85,16 +85,16 @@ const std::array<Row, 30>& rows() {
 }
 // clang-format on
 
-AngleRange radians(const AngleRange& degrees, double share, bool mirrored) {
-  const double scale = share * kPi / 180;
+AngleRange radians(const AngleRange& degrees, double fraction, bool mirrored) {
+  const double scale = fraction * kPi / 180;
   return mirrored ? AngleRange{-scale * degrees.max, -scale * degrees.min}
                   : AngleRange{scale * degrees.min, scale * degrees.max};
 }
 
 // The mirror image keeps what a turn about X does; turns about Y and Z go the other way.
-JointMotion motionOf(const Row& row, double share, bool mirrored) {
-  const AngleRange x = radians(row.x, share, false), z = radians(row.z, share, mirrored);
-  const AngleRange twist = radians(row.twist, share, mirrored);
+JointMotion motionOf(const Row& row, double fraction, bool mirrored) {
+  const AngleRange x = radians(row.x, fraction, false), z = radians(row.z, fraction, mirrored);
+  const AngleRange twist = radians(row.twist, fraction, mirrored);
   switch (row.kind) {
     case Kind::kHinge:
       return Hinge{x};
@@ -198,7 +198,7 @@ class LimitBuilder {
     axes << x, direction, x.cross(direction);
 
     JointLimit limit;
-    limit.motion = motionOf(row, shareOf(row), bone.mirrored);
+    limit.motion = motionOf(row, fractionOf(row), bone.mirrored);
     limit.neutral = (parent.conjugate() * global).normalized();
     limit.axes = (global.conjugate() * Quat(axes)).normalized();
     limit.restTranslation = skeleton_.joints[joint].rest.translation;
@@ -207,12 +207,12 @@ class LimitBuilder {
 
   // A bone without an end of its own goes on as its parent's does.
   Vec3 parentDirection(Index joint, const Quat& parent) const {
-    const Vec3 way = parent * skeleton_.joints[joint].rest.translation;
-    return way.norm() > 0 ? Vec3(way.normalized()) : kFront;
+    const Vec3 displacement = parent * skeleton_.joints[joint].rest.translation;
+    return displacement.norm() > 0 ? Vec3(displacement.normalized()) : kFront;
   }
 
   // The spine and the neck share their range among the bones that are there.
-  double shareOf(const Row& row) const {
+  double fractionOf(const Row& row) const {
     const auto amongThem = [&](std::initializer_list<std::string_view> names) {
       if (std::find(names.begin(), names.end(), row.range.bone) == names.end()) return 1.0;
       const auto there = std::count_if(joints_.begin(), joints_.end(), [&](const HumanoidJoint& joint) {

@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kStill = 1e-9;  // a rim narrower than this is a point
 
-double between(double a, double b, double share) {
-  return a + share * (b - a);
+double between(double a, double b, double fraction) {
+  return a + fraction * (b - a);
 }
 
 // Directions of the bone in the limit's axes.
@@ -34,8 +34,9 @@ struct RimMaker {
     const Index side = (steps + 3) / 4;
     for (int c = 0; c < 4; ++c) {
       for (Index i = 0; i < side; ++i) {
-        const double share = double(i) / side;
-        add(turn(between(corners[c][0], corners[c + 1][0], share), between(corners[c][1], corners[c + 1][1], share)));
+        const double fraction = double(i) / side;
+        add(turn(between(corners[c][0], corners[c + 1][0], fraction),
+                 between(corners[c][1], corners[c + 1][1], fraction)));
       }
     }
   }
@@ -69,8 +70,9 @@ struct RimMaker {
     const Index side = static_cast<Index>((steps + corners - 1) / corners);
     for (std::size_t c = 0; c < corners; ++c) {
       const Vec3 from = limit.polygon[c].normalized(), to = limit.polygon[(c + 1) % corners].normalized();
-      const Vec3 way = toRotationVector(shortestRotation(from, to));
-      for (Index i = 0; i < side; ++i) outline.rim.push_back(fromRotationVector(double(i) / side * way) * from);
+      const Vec3 displacement = toRotationVector(shortestRotation(from, to));
+      for (Index i = 0; i < side; ++i)
+        outline.rim.push_back(fromRotationVector(double(i) / side * displacement) * from);
     }
   }
 };

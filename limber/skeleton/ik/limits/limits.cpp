@@ -196,8 +196,8 @@ struct Axes {
   }
 };
 
-double between(const AngleRange& range, double share) {
-  return range.min + share * (range.max - range.min);
+double between(const AngleRange& range, double fraction) {
+  return range.min + fraction * (range.max - range.min);
 }
 
 struct Sample {

@@ -38,7 +38,7 @@ class CcdIteration : public IkIteration {
     for (const IkSystem::Node& node : system.nodes) {
       const double depth = node.parent < 0 ? 1 : 1 + depths_[static_cast<std::size_t>(node.parent)];
       depths_.push_back(depth);
-      shares_.push_back(node.freedom * (fromTips ? std::pow(depth, -kEvenness) : 1));
+      fractions_.push_back(node.freedom * (fromTips ? std::pow(depth, -kEvenness) : 1));
     }
   }
 
@@ -104,11 +104,11 @@ class CcdIteration : public IkIteration {
       const Vec3& pivot = system.positions[static_cast<std::size_t>(node)];
       const Vec3 from = positions_[first] - pivot, to = system.effectors[first].target - pivot;
       if (!(from.squaredNorm() > 0 && to.squaredNorm() > 0)) return;
-      const double share = shares_[static_cast<std::size_t>(node)];
+      const double fraction = fractions_[static_cast<std::size_t>(node)];
       Quat turned = shortestRotation(from, to);
-      if (share < 1) {  // about this share of its angle: exact enough, and much cheaper than slerp
-        turned.coeffs() *= share;
-        turned.w() += 1 - share;
+      if (fraction < 1) {  // about this share of its angle: exact enough, and much cheaper than slerp
+        turned.coeffs() *= fraction;
+        turned.w() += 1 - fraction;
         turned.coeffs() /= std::sqrt(turned.squaredNorm());
       }
       turnFreely(system, node, turned, first);
@@ -229,7 +229,7 @@ class CcdIteration : public IkIteration {
   std::vector<Quat> rotations_;
   std::vector<double> weights_;  // of the effectors, in this sweep
   std::vector<char> turnsItself_;
-  std::vector<double> depths_, shares_;
+  std::vector<double> depths_, fractions_;
   Leap leap_;
   IkSystem::State best_;
 };

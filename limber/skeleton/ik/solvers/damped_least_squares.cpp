@@ -7,33 +7,33 @@ namespace limber {
 
 namespace {
 
-constexpr double kDampingShare = 0.1;  // damping, of the squared distance left to go
-constexpr double kLeast = 1e-12;       // of the Gram matrix's trace, against singular ones
+constexpr double kDampingFraction = 0.1;  // damping, of the squared distance left to go
+constexpr double kMin = 1e-12;            // of the Gram matrix's trace, against singular ones
 
 class DampedLeastSquares : public JacobianIteration {
  public:
-  DampedLeastSquares(const IkSystem& system, std::vector<double> gains, double share)
-      : JacobianIteration(system, std::move(gains)), share_(share) {}
+  DampedLeastSquares(const IkSystem& system, std::vector<double> gains, double fraction)
+      : JacobianIteration(system, std::move(gains)), fraction_(fraction) {}
 
  private:
   bool heedsCaution() const override { return true; }
 
   void weighRows(const JacobianRows& rows, Eigen::Ref<Eigen::VectorXd> y) override {
-    const double damping = share_ * rows.caution * y.squaredNorm() + kLeast * rows.gram.diagonal().sum();
+    const double damping = fraction_ * rows.caution * y.squaredNorm() + kMin * rows.gram.diagonal().sum();
     solveCholesky(rows.gram, damping, y);
   }
 
-  double share_;
+  double fraction_;
 };
 
 }  // namespace
 
 std::unique_ptr<IkIteration> makeDampedLeastSquares(const IkSystem& system) {
-  return makeDampedIteration(system, freedomsOf(system), kDampingShare);
+  return makeDampedIteration(system, freedomsOf(system), kDampingFraction);
 }
 
-std::unique_ptr<IkIteration> makeDampedIteration(const IkSystem& system, std::vector<double> gains, double share) {
-  return std::make_unique<DampedLeastSquares>(system, std::move(gains), share);
+std::unique_ptr<IkIteration> makeDampedIteration(const IkSystem& system, std::vector<double> gains, double fraction) {
+  return std::make_unique<DampedLeastSquares>(system, std::move(gains), fraction);
 }
 
 }  // namespace limber

@@ -14,6 +14,6 @@ namespace limber {
 std::unique_ptr<IkIteration> makeDampedLeastSquares(const IkSystem& system);
 
 // The same with another willingness of each node to move (#nodes, 0 or more) and another share.
-std::unique_ptr<IkIteration> makeDampedIteration(const IkSystem& system, std::vector<double> gains, double share);
+std::unique_ptr<IkIteration> makeDampedIteration(const IkSystem& system, std::vector<double> gains, double fraction);
 
 }  // namespace limber

@@ -68,7 +68,7 @@ void GoalIteration::forward(IkSystem& system) {
       system.offsets[i] += parent.conjugate() * Vec3(node.freedom * gap);
       system.limitNode(n);
     }
-    place(system, n);
+    updatePosition(system, n);
     if (node.freedom > 0) turn(system, n);
   }
 }
@@ -81,13 +81,13 @@ void GoalIteration::recordEffectorOffsets(const IkSystem& system) {
     std::size_t slot = firstOffset_[i];
     for (const int below : system.effectorsBelow(n)) {
       const int effector = system.effectors[static_cast<std::size_t>(below)].node;
-      const Vec3 way = system.positions[static_cast<std::size_t>(effector)] - system.positions[i];
-      effectorOffsets_[slot++] = system.globals[i].conjugate() * way;
+      const Vec3 displacement = system.positions[static_cast<std::size_t>(effector)] - system.positions[i];
+      effectorOffsets_[slot++] = system.globals[i].conjugate() * displacement;
     }
   }
 }
 
-void GoalIteration::place(IkSystem& system, int node) {
+void GoalIteration::updatePosition(IkSystem& system, int node) {
   const auto n = static_cast<std::size_t>(node);
   const Quat parent = system.parentRotation(node);
   system.globals[n] = parent * system.locals[n];
@@ -118,9 +118,9 @@ Quat GoalIteration::wantedTurn(const IkSystem& system, int node) const {
   if (info.onlyChild >= 0 && !hasOrientation(system, node)) {
     const auto child = static_cast<std::size_t>(info.onlyChild);
     const Vec3 bone = system.globals[n] * system.offsets[child];
-    const Vec3 way = goals_[child] - system.positions[n];
-    if (!(bone.squaredNorm() > 0 && way.squaredNorm() > 0)) return Quat::Identity();
-    return shortestRotation(bone, way);
+    const Vec3 displacement = goals_[child] - system.positions[n];
+    if (!(bone.squaredNorm() > 0 && displacement.squaredNorm() > 0)) return Quat::Identity();
+    return shortestRotation(bone, displacement);
   }
   Mat3 correlation = Mat3::Zero();
   for (int c = node + 1; c < system.nodeCount() && info.childCount > 0; ++c) {

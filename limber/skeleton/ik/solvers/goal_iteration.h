@@ -28,7 +28,7 @@ class GoalIteration : public IkIteration {
   bool isTurnOfEffectors(Index done) const;
   void forward(IkSystem& system);
   void recordEffectorOffsets(const IkSystem& system);
-  static void place(IkSystem& system, int node);
+  static void updatePosition(IkSystem& system, int node);
   void turn(IkSystem& system, int node) const;
   Quat wantedTurn(const IkSystem& system, int node) const;
   static bool hasOrientation(const IkSystem& system, int node);

@@ -12,7 +12,7 @@ namespace limber {
 namespace {
 
 // A slide as long as this share of the longest limb costs a step as much as a radian.
-constexpr double kSlideShare = 0.3;
+constexpr double kSlideFraction = 0.3;
 
 }  // namespace
 
@@ -72,7 +72,7 @@ void IkJacobian::build(const IkSystem& system) {
     tasks->measure(system, true);
     reach = tasks->size();
   }
-  slideLength_ = reach > 0 ? kSlideShare * reach : 1;
+  slideLength_ = reach > 0 ? kSlideFraction * reach : 1;
   freedoms.clear();
   for (int n = 0; n < system.nodeCount(); ++n) {
     const auto i = static_cast<std::size_t>(n);

@@ -249,14 +249,14 @@ void JacobianIteration::gramOfRows(Eigen::Index begin, Eigen::Index end, const E
 // Moves towards the reference pose as far as no row notices (to first order).
 void JacobianIteration::addSecondary(const IkSystem& system) {
   const Eigen::Index columns = jacobian_.columns(), rows = jacobian_.rows();
-  const double share = system.options().referenceGain;
+  const double fraction = system.options().referenceGain;
   for (Eigen::Index c = 0; c < columns; ++c) {
     const IkJacobian::Freedom& freedom = jacobian_.freedoms[static_cast<std::size_t>(c)];
     const auto n = static_cast<std::size_t>(freedom.node);
     const double gain = jacobian_.gain(freedom.node) * (freedom.slides ? jacobian_.slideLength() : 1);
-    const Vec3 way = freedom.slides ? Vec3(system.referenceOffsets[n] - system.offsets[n])
-                                    : toRotationVector(system.locals[n].conjugate() * system.references[n]);
-    secondary_[c] = share / gain * way.dot(freedom.axis);
+    const Vec3 displacement = freedom.slides ? Vec3(system.referenceOffsets[n] - system.offsets[n])
+                                             : toRotationVector(system.locals[n].conjugate() * system.references[n]);
+    secondary_[c] = fraction / gain * displacement.dot(freedom.axis);
   }
   gramOfRows(0, rows, reduced_, false);
   y_.setZero();

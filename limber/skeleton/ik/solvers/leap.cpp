@@ -9,7 +9,7 @@ namespace limber {
 namespace {
 
 constexpr double kFurthest = 64;     // times the last sweep's turns
-constexpr double kLeastHeed = 0.01;  // of an effector that has arrived
+constexpr double kMinWeight = 0.01;  // of an effector that has arrived
 
 }  // namespace
 
@@ -42,8 +42,8 @@ void heedTheFurthest(const IkSystem& system, std::vector<double>& weights) {
   double most = 0;
   for (std::size_t e = 0; e < weights.size(); ++e) most = std::max(most, left(e));
   for (std::size_t e = 0; e < weights.size(); ++e) {
-    const double share = most > 0 ? left(e) / most : 1;
-    weights[e] = system.effectors[e].weight * (kLeastHeed + (1 - kLeastHeed) * share * share);
+    const double fraction = most > 0 ? left(e) / most : 1;
+    weights[e] = system.effectors[e].weight * (kMinWeight + (1 - kMinWeight) * fraction * fraction);
   }
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kSpringDamping = 0.1;  // of the squared distance left to go: what M / t^2 begins with
 // What the lightest joint counts as of the heaviest at least. Without a bound tips whip about and the base stays.
-constexpr double kLeastInertia = 1e-2;
+constexpr double kMinInertia = 1e-2;
 
 // Some of the rods together.
 struct Rods {
@@ -33,29 +33,29 @@ struct Rods {
 // 1 / sqrt(inertia), so that a step damped evenly in the columns of IkJacobian is damped by inertia in the joints.
 std::vector<double> gainsByInertia(const IkSystem& system) {
   const std::size_t count = system.nodes.size();
-  std::vector<Vec3> places(count, Vec3::Zero());
+  std::vector<Vec3> positions(count, Vec3::Zero());
   std::vector<Quat> turns(count, Quat::Identity());
   for (std::size_t n = 0; n < count; ++n) {
     const int parent = system.nodes[n].parent;
     const auto p = static_cast<std::size_t>(std::max(parent, 0));
     turns[n] = parent < 0 ? system.references[n] : turns[p] * system.references[n];
-    if (parent >= 0) places[n] = places[p] + turns[p] * system.referenceOffsets[n];
+    if (parent >= 0) positions[n] = positions[p] + turns[p] * system.referenceOffsets[n];
   }
   std::vector<Rods> below(count);  // each node
   std::vector<double> inertia(count, 0.0);
   double most = 0;
   for (std::size_t n = count; n-- > 0;) {
-    inertia[n] = below[n].inertiaAbout(places[n]);
+    inertia[n] = below[n].inertiaAbout(positions[n]);
     most = std::max(most, inertia[n]);
     if (system.nodes[n].parent < 0) continue;
     const auto p = static_cast<std::size_t>(system.nodes[n].parent);
     const double mass = system.referenceOffsets[n].norm();
     below[p].add(below[n]);
-    below[p].add({mass, 0.5 * (places[p] + places[n]), mass * mass * mass / 12});
+    below[p].add({mass, 0.5 * (positions[p] + positions[n]), mass * mass * mass / 12});
   }
   std::vector<double> gains = freedomsOf(system);
   for (std::size_t n = 0; n < gains.size() && most > 0; ++n) {
-    gains[n] /= std::sqrt(std::max(inertia[n] / most, kLeastInertia));
+    gains[n] /= std::sqrt(std::max(inertia[n] / most, kMinInertia));
   }
   return gains;
 }

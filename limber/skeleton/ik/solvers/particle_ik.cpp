@@ -13,19 +13,19 @@ constexpr int kLimbSweeps = 8;
 constexpr double kAhead = 0.8;
 
 // Moves two particles along their line to the distance `length`; `share` of it the first, the rest the second.
-void keepLength(Vec3& a, Vec3& b, double length, double share) {
+void keepLength(Vec3& a, Vec3& b, double length, double fraction) {
   const Vec3 line = b - a;
   const double distance = line.norm();
   if (!(distance > 0)) return;  // the next sweep parts them
   const Vec3 gap = line * ((distance - length) / distance);
-  a += share * gap;
-  b -= (1 - share) * gap;
+  a += fraction * gap;
+  b -= (1 - fraction) * gap;
 }
 
 class ParticleIk : public GoalIteration {
  public:
-  explicit ParticleIk(const IkSystem& system) : GoalIteration(system), held_(system.nodes.size(), 0) {
-    for (const IkSystem::Effector& effector : system.effectors) held_[static_cast<std::size_t>(effector.node)] = 1;
+  explicit ParticleIk(const IkSystem& system) : GoalIteration(system), pinned_(system.nodes.size(), 0) {
+    for (const IkSystem::Effector& effector : system.effectors) pinned_[static_cast<std::size_t>(effector.node)] = 1;
   }
 
  private:
@@ -88,7 +88,7 @@ class ParticleIk : public GoalIteration {
     if (parent < 0 || isSpine(system, node) != spine) return;
     const auto p = static_cast<std::size_t>(parent);
     const bool parentStays = isPinned(system, parent) || (!spine && isSpine(system, parent));
-    const bool nodeStays = inwards && !spine && held_[n] != 0;
+    const bool nodeStays = inwards && !spine && pinned_[n] != 0;
     if (parentStays && nodeStays) return;
     keepLength(goals_[p], goals_[n], system.offsets[n].norm(),
                parentStays ? 0.0
@@ -97,7 +97,7 @@ class ParticleIk : public GoalIteration {
                            : 1 - kAhead);
   }
 
-  std::vector<char> held_;  // #nodes, whether it is an effector's
+  std::vector<char> pinned_;  // #nodes, whether it is an effector's
 };
 
 }  // namespace

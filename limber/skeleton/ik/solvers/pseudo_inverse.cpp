@@ -11,8 +11,8 @@ namespace limber {
 
 namespace {
 
-constexpr double kNegligible = 1e-6;     // squared singular values below this share of the largest are taken for 0
-constexpr double kLongestWay = kPi / 4;  // radians, of all joints together, along one singular vector
+constexpr double kNegligible = 1e-6;  // squared singular values below this share of the largest are taken for 0
+constexpr double kMaxStep = kPi / 4;  // radians, of all joints together, along one singular vector
 
 class PseudoInverse : public JacobianIteration {
  public:
@@ -32,7 +32,7 @@ class PseudoInverse : public JacobianIteration {
     auto vectors = vectors_.topLeftCorner(m, m);
     symmetricEigen(rows.gram, vectors);
     const double least = kNegligible * rows.gram.diagonal().maxCoeff();
-    const double longest = kLongestWay / std::max(1.0, rows.caution);
+    const double longest = kMaxStep / std::max(1.0, rows.caution);
     for (Eigen::Index i = 0; i < m; ++i) {
       const double value = rows.gram(i, i);
       if (!(value > least)) {

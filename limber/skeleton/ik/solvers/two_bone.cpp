@@ -87,7 +87,7 @@ TwoBoneTurns solveTwoBone(const TwoBone& bones) {
           turnFrame(bend.lower, bend.normal, newLower, bend.newNormal)};
 }
 
-TwoBonePlaces placeTwoBone(const TwoBone& bones) {
+TwoBonePositions twoBonePositions(const TwoBone& bones) {
   const Bend bend = bendFor(bones);
   return {bones.start + bend.along * bend.direction + bend.out * bend.side,
           bones.start + bend.distance * bend.direction};

@@ -28,10 +28,10 @@ struct TwoBoneTurns {
 TwoBoneTurns solveTwoBone(const TwoBone& bones);
 
 // Where these turns bring the middle and the end, in half the time.
-struct TwoBonePlaces {
+struct TwoBonePositions {
   Vec3 middle, end;
 };
-TwoBonePlaces placeTwoBone(const TwoBone& bones);
+TwoBonePositions twoBonePositions(const TwoBone& bones);
 
 // The method: each target moves its joint, its parent and its grandparent (the base; the default base is the
 // grandparent's root, so name it). Orientations turn the effector's own joint. Refuses effectors that share joints or

@@ -39,8 +39,8 @@ TEST_F(TwoBoneTest, ReachesBendsToThePoleAndTurnsTheMiddleAboutItsHingeOnly) {
     const double upper = (bones.middle - bones.start).norm(), lower = (bones.end - bones.middle).norm();
     const double distance = (bones.target - bones.start).norm();
     const Solved solved = rebuilt(bones);
-    const TwoBonePlaces places = placeTwoBone(bones);
-    EXPECT_LT((places.middle - solved.middle).norm() + (places.end - solved.end).norm(), 1e-9);
+    const TwoBonePositions positions = twoBonePositions(bones);
+    EXPECT_LT((positions.middle - solved.middle).norm() + (positions.end - solved.end).norm(), 1e-9);
     const double reachable = std::clamp(distance, std::abs(upper - lower), upper + lower);
     EXPECT_NEAR((solved.end - bones.start).norm(), reachable, 1e-9);
     EXPECT_LT((solved.end - bones.start).cross(bones.target - bones.start).norm(), 1e-8) << "towards the target";

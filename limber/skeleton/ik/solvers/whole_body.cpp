@@ -7,8 +7,8 @@ namespace limber {
 
 namespace {
 
-constexpr double kBodyDampingShare = 0.05;  // damping, of the squared distance left to go
-constexpr double kWillingness = 0.3;        // of a joint that carries everything, against one that carries nothing
+constexpr double kBodyDampingFraction = 0.05;  // damping, of the squared distance left to go
+constexpr double kWillingness = 0.3;           // of a joint that carries everything, against one that carries nothing
 
 // A node's freedom, less for one that carries more: its share of the length of all bones.
 std::vector<double> gainsByLoad(const IkSystem& system) {
@@ -31,7 +31,7 @@ std::vector<double> gainsByLoad(const IkSystem& system) {
 }  // namespace
 
 std::unique_ptr<IkIteration> makeWholeBody(const IkSystem& system) {
-  return makeDampedIteration(system, gainsByLoad(system), kBodyDampingShare);
+  return makeDampedIteration(system, gainsByLoad(system), kBodyDampingFraction);
 }
 
 }  // namespace limber

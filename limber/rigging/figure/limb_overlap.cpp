@@ -1,4 +1,4 @@
-#include "limber/rigging/figure/shared_place.h"
+#include "limber/rigging/figure/limb_overlap.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,13 +13,13 @@ constexpr double kAlong[] = {0.55, 0.8, 1}, kAlongLower[] = {0.25, 0.5, 0.75, 1}
 constexpr double kTouch = 0.15, kDeep = 0.6;  // of both thicknesses that places touch by, and from there count fully
 
 // How much a place of a limb lies in another limb, 0 to 1: by the bone that it is deepest in.
-double within(const LimbSpace::Place& place, const LimbSpace& other) {
+double within(const LimbSpace::Sample& sample, const LimbSpace& other) {
   double least = 0, width = 1;
   for (const LimbSpace::Bone& bone : other.bones) {
-    const double thick = place.thick + bone.thick;
-    const Vec3 from = place.at - bone.from;
-    const double along = std::clamp(from.dot(bone.way) * bone.perLength2, 0.0, 1.0);
-    const double apart2 = (from - along * bone.way).squaredNorm();
+    const double thick = sample.thick + bone.thick;
+    const Vec3 from = sample.at - bone.from;
+    const double along = std::clamp(from.dot(bone.direction) * bone.perLength2, 0.0, 1.0);
+    const double apart2 = (from - along * bone.direction).squaredNorm();
     if (apart2 >= thick * thick) continue;
     const double gap = std::sqrt(apart2) - thick;
     if (gap >= least) continue;
@@ -29,28 +29,28 @@ double within(const LimbSpace::Place& place, const LimbSpace& other) {
   return std::clamp((-least / width - kTouch) / kDeep, 0.0, 1.0);
 }
 
-double sharedOneWay(const LimbSpace& limb, const LimbSpace& other) {
+double overlapOneSided(const LimbSpace& limb, const LimbSpace& other) {
   double shared = 0;
-  for (const LimbSpace::Place& place : limb.places) shared += within(place, other);
+  for (const LimbSpace::Sample& sample : limb.samples) shared += within(sample, other);
   return shared;
 }
 
 }  // namespace
 
 LimbSpace spaceOf(const Figure& figure, int limb) {
-  const FigureLimbPlaces joints = figure.places(limb);
+  const LimbPositions joints = figure.positions(limb);
   const double* thick = isLeg(limb) ? kLegThick : kArmThick;
   const double upper = thick[0] * figure.stature, lower = thick[1] * figure.stature;
   LimbSpace space;
   std::size_t next = 0;
-  for (const double at : kAlong) space.places[next++] = {joints.root + at * (joints.middle - joints.root), upper};
+  for (const double at : kAlong) space.samples[next++] = {joints.root + at * (joints.middle - joints.root), upper};
   for (const double at : kAlongLower) {
-    space.places[next++] = {joints.middle + at * (joints.ankle - joints.middle), lower};
+    space.samples[next++] = {joints.middle + at * (joints.ankle - joints.middle), lower};
   }
-  space.places[next] = {joints.tip, lower};
+  space.samples[next] = {joints.tip, lower};
   const auto bone = [](const Vec3& from, const Vec3& to, double radius) {
-    const Vec3 way = to - from;
-    return LimbSpace::Bone{from, way, 1 / way.squaredNorm(), radius};
+    const Vec3 displacement = to - from;
+    return LimbSpace::Bone{from, displacement, 1 / displacement.squaredNorm(), radius};
   };
   const Vec3 start = joints.root + kRoot * (joints.middle - joints.root);
   space.bones = {bone(start, joints.middle, upper), bone(joints.middle, joints.ankle, lower),
@@ -63,10 +63,10 @@ LimbSpace spaceOf(const Figure& figure, int limb) {
   return space;
 }
 
-double sharedPlace(const LimbSpace& a, const LimbSpace& b) {
+double limbOverlap(const LimbSpace& a, const LimbSpace& b) {
   const double reach = a.reach + b.reach;
   if ((a.middle - b.middle).squaredNorm() >= reach * reach) return 0;
-  return sharedOneWay(a, b) + sharedOneWay(b, a);
+  return overlapOneSided(a, b) + overlapOneSided(b, a);
 }
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-#include "limber/skeleton/clip/held_clip.h"
+#include "limber/skeleton/clip/keep_duration.h"
 
 namespace limber {
 

@@ -1,4 +1,4 @@
-#include "limber/session/scene/scene_places.h"
+#include "limber/session/scene/scene_layout.h"
 
 #include <algorithm>
 
@@ -30,9 +30,9 @@ Affine toScene(std::span<const SceneMember> members, std::size_t member) {
          jointFrame(attachment.to->state(), attachment.joint) * attachment.offset;
 }
 
-Box boxOf(const Session& session, const Affine& place) {
+Box boxOf(const Session& session, const Affine& transform) {
   Box box;
-  for (const Vec3f& position : session.state().rig->geometry().positions) box.add(place * position.cast<double>());
+  for (const Vec3f& position : session.state().rig->geometry().positions) box.add(transform * position.cast<double>());
   return box;
 }
 

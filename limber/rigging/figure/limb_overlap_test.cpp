@@ -1,4 +1,4 @@
-#include "limber/rigging/figure/shared_place.h"
+#include "limber/rigging/figure/limb_overlap.h"
 
 #include <gtest/gtest.h>
 
@@ -9,22 +9,22 @@ namespace limber {
 namespace {
 
 double shared(const Figure& figure, int a, int b) {
-  return sharedPlace(spaceOf(figure, a), spaceOf(figure, b));
+  return limbOverlap(spaceOf(figure, a), spaceOf(figure, b));
 }
 
 }  // namespace
 
-TEST(SharedPlace, IsNoneOfLimbsThatAreApart) {
+TEST(LimbOverlap, IsNoneOfLimbsThatAreApart) {
   const Figure figure = testing::standingFigure();
   for (int a = 0; a < kFigureLimbs; ++a) {
     for (int b = 0; b < kFigureLimbs; ++b) EXPECT_EQ(a != b && shared(figure, a, b) > 0, false) << a << " " << b;
   }
 }
 
-TEST(SharedPlace, GrowsAsLimbsComeNear) {
+TEST(LimbOverlap, GrowsAsLimbsComeNear) {
   Figure figure = testing::standingFigure();
   const FigureLimb straight = figure.limbs[3];
-  const Vec3 toOther = (figure.places(2).middle - figure.socket(3)).normalized();
+  const Vec3 toOther = (figure.positions(2).middle - figure.socket(3)).normalized();
   double before = 0;
   for (const double part : {0.7, 0.85, 1.0}) {
     figure.limbs[3].upper = ((1 - part) * straight.upper + part * toOther).normalized();
@@ -36,20 +36,20 @@ TEST(SharedPlace, GrowsAsLimbsComeNear) {
   EXPECT_GT(before, 2);
 }
 
-TEST(SharedPlace, OfALimbWithItselfIsAllBeyondItsRoot) {
+TEST(LimbOverlap, OfALimbWithItselfIsAllBeyondItsRoot) {
   const LimbSpace space = spaceOf(testing::crouchingFigure(), 3);
-  EXPECT_NEAR(sharedPlace(space, space), 2.0 * static_cast<double>(space.places.size()), 1e-9);
+  EXPECT_NEAR(limbOverlap(space, space), 2.0 * static_cast<double>(space.samples.size()), 1e-9);
 }
 
-TEST(SharedPlace, TheBallHoldsTheLimb) {
+TEST(LimbOverlap, TheBallHoldsTheLimb) {
   const Figure figure = testing::crouchingFigure();
   for (int limb = 0; limb < kFigureLimbs; ++limb) {
     const LimbSpace space = spaceOf(figure, limb);
-    for (const LimbSpace::Place& place : space.places) {
-      EXPECT_LE((place.at - space.middle).norm() + place.thick, space.reach + 1e-12);
+    for (const LimbSpace::Sample& sample : space.samples) {
+      EXPECT_LE((sample.at - space.middle).norm() + sample.thick, space.reach + 1e-12);
     }
     for (const LimbSpace::Bone& bone : space.bones) {
-      for (const Vec3& end : {bone.from, Vec3(bone.from + bone.way)}) {
+      for (const Vec3& end : {bone.from, Vec3(bone.from + bone.direction)}) {
         EXPECT_LE((end - space.middle).norm() + bone.thick, space.reach + 1e-12);
       }
     }

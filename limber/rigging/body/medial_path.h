@@ -10,9 +10,9 @@ namespace limber {
 // The centres of medial spheres that lead from the sphere nearest to `from` to the one nearest to `to`, each
 // all but touching the next: the shortest such way inside. Empty where there is none. Mesh space. Cost: O(S^2) for S
 // spheres.
-std::vector<Vec3> medialWay(const BodyVolume& body, const Vec3& from, const Vec3& to);
+std::vector<Vec3> medialPath(const BodyVolume& body, const Vec3& from, const Vec3& to);
 
 // The place at a share of the length of a way of at least one place.
-Vec3 alongWay(const std::vector<Vec3>& way, double share);
+Vec3 alongPath(const std::vector<Vec3>& path, double fraction);
 
 }  // namespace limber

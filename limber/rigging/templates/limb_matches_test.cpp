@@ -1,4 +1,4 @@
-#include "limber/rigging/templates/limb_places.h"
+#include "limber/rigging/templates/limb_matches.h"
 
 #include <gtest/gtest.h>
 
@@ -20,16 +20,16 @@ struct Embedded {
   }
   Index joint(const char* name) const { return skeleton.find(name).value(); }
   std::string missing() const {
-    return limbsWithoutPlace(skeleton, limbsIn(skeleton, embedding, person.body, person.frame));
+    return unmatchedLimbs(skeleton, limbsIn(skeleton, embedding, person.body, person.frame));
   }
 };
 
-TEST(LimbPlaces, EveryJointIsInOneLimbAndAWholeBodyHasAll) {
+TEST(LimbMatches, EveryJointIsInOneLimbAndAWholeBodyHasAll) {
   const Embedded embedded;
   std::vector<int> count(embedded.skeleton.jointCount(), 0);
   for (const TemplateLimb& limb :
        limbsIn(embedded.skeleton, embedded.embedding, embedded.person.body, embedded.person.frame)) {
-    EXPECT_TRUE(limb.hasPlace) << embedded.skeleton.joints[limb.joints.front()].name;
+    EXPECT_TRUE(limb.hasMatch) << embedded.skeleton.joints[limb.joints.front()].name;
     for (const Index j : limb.joints) ++count[j];
   }
   for (Index j = 0; j < embedded.skeleton.jointCount(); ++j) {
@@ -38,7 +38,7 @@ TEST(LimbPlaces, EveryJointIsInOneLimbAndAWholeBodyHasAll) {
   EXPECT_EQ(embedded.missing(), "");
 }
 
-TEST(LimbPlaces, FingersAreNoneAndDoNotEndAnArm) {
+TEST(LimbMatches, FingersAreNoneAndDoNotEndAnArm) {
   const auto placed = [](const char* name) {
     const TemplateSkeleton& skeleton = findTemplate(name);
     std::vector<std::string> limbs;
@@ -51,42 +51,42 @@ TEST(LimbPlaces, FingersAreNoneAndDoNotEndAnArm) {
   EXPECT_EQ(placed("humanoid-fingers"), placed("humanoid"));
 }
 
-TEST(LimbPlaces, JointsThatStandIllHaveNone) {
+TEST(LimbMatches, JointsThatStandIllHaveNone) {
   Embedded embedded;
   for (const char* name : {"neck", "head"}) embedded.embedding.costs[embedded.joint(name)] = 20;
   EXPECT_EQ(embedded.missing(), "neck to head");
 }
 
-TEST(LimbPlaces, FeetInOnePartOfTheBodyHaveNone) {
+TEST(LimbMatches, FeetInOnePartOfTheBodyHaveNone) {
   Embedded embedded;
   for (const auto& [name, x] : {std::pair("leftFoot", 0.04), std::pair("rightFoot", -0.04)}) {
-    embedded.embedding.places[embedded.joint(name)] = Vec3(x, 0.62, 0);  // in the trunk
+    embedded.embedding.positions[embedded.joint(name)] = Vec3(x, 0.62, 0);  // in the trunk
   }
   for (const auto& [name, x] : {std::pair("leftLowerLeg", 0.04), std::pair("rightLowerLeg", -0.04)}) {
-    embedded.embedding.places[embedded.joint(name)] = Vec3(x, 0.7, 0);
+    embedded.embedding.positions[embedded.joint(name)] = Vec3(x, 0.7, 0);
   }
   EXPECT_EQ(embedded.missing(), "leftUpperLeg to leftToes, rightUpperLeg to rightToes");
 }
 
-TEST(LimbPlaces, AnArmInTheTrunkHasNone) {
+TEST(LimbMatches, AnArmInTheTrunkHasNone) {
   Embedded embedded;
-  std::vector<Vec3>& places = embedded.embedding.places;
-  places[embedded.joint("leftLowerArm")] = Vec3(0.03, 0.7, 0);
-  places[embedded.joint("leftHand")] = Vec3(0.03, 0.6, 0);
+  std::vector<Vec3>& positions = embedded.embedding.positions;
+  positions[embedded.joint("leftLowerArm")] = Vec3(0.03, 0.7, 0);
+  positions[embedded.joint("leftHand")] = Vec3(0.03, 0.6, 0);
   EXPECT_EQ(embedded.missing(), "leftShoulder to leftHand");
 }
 
-TEST(LimbPlaces, OfABentTemplateLimbsThatLieInOthersHaveNone) {
+TEST(LimbMatches, OfABentTemplateLimbsThatLieInOthersHaveNone) {
   Embedded embedded;
   TemplateSkeleton bent = embedded.skeleton;
-  for (const TemplateJoint& joint : bent.joints) bent.standing.push_back(joint.place);
+  for (const TemplateJoint& joint : bent.joints) bent.standing.push_back(joint.position);
   const auto missing = [&] {
-    return limbsWithoutPlace(bent, limbsIn(bent, embedded.embedding, embedded.person.body, embedded.person.frame));
+    return unmatchedLimbs(bent, limbsIn(bent, embedded.embedding, embedded.person.body, embedded.person.frame));
   };
   EXPECT_EQ(missing(), "");
-  std::vector<Vec3>& places = embedded.embedding.places;
-  places[embedded.joint("leftLowerArm")] = places[embedded.joint("spine")];
-  places[embedded.joint("leftHand")] = places[embedded.joint("hips")];
+  std::vector<Vec3>& positions = embedded.embedding.positions;
+  positions[embedded.joint("leftLowerArm")] = positions[embedded.joint("spine")];
+  positions[embedded.joint("leftHand")] = positions[embedded.joint("hips")];
   EXPECT_EQ(missing(), "leftShoulder to leftHand");
 }
 

@@ -12,7 +12,7 @@ namespace limber {
 struct TemplateLimb {
   std::vector<Index> joints;  // downwards; without tips
   std::vector<Index> placed;  // those that are searched for in the model, a tip at the end among them
-  bool hasPlace = true;
+  bool hasMatch = true;
 };
 
 // All limbs, each with a place.
@@ -31,12 +31,13 @@ std::vector<TemplateLimb> limbsIn(const TemplateSkeleton& skeleton, const Templa
 // put the joints; before, an embedding makes the most of a stump.
 //
 // places  body space, of all joints
-void findHeadless(const TemplateSkeleton& skeleton, const std::vector<Vec3>& places, std::vector<TemplateLimb>& limbs);
+void findHeadless(const TemplateSkeleton& skeleton, const std::vector<Vec3>& positions,
+                  std::vector<TemplateLimb>& limbs);
 
 // Between a place and the straight bone from `a` to `b`.
-double distanceToBone(const Vec3& place, const Vec3& a, const Vec3& b);
+double distanceToBone(const Vec3& position, const Vec3& a, const Vec3& b);
 
 // Of those without a place: "leftUpperLeg to leftToes, ..."; empty where there are none.
-std::string limbsWithoutPlace(const TemplateSkeleton& skeleton, const std::vector<TemplateLimb>& limbs);
+std::string unmatchedLimbs(const TemplateSkeleton& skeleton, const std::vector<TemplateLimb>& limbs);
 
 }  // namespace limber

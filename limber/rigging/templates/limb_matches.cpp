@@ -1,4 +1,4 @@
-#include "limber/rigging/templates/limb_places.h"
+#include "limber/rigging/templates/limb_matches.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,18 +10,18 @@ namespace limber {
 
 namespace {
 
-constexpr double kNoPlace = 2.1;                    // mean cost of a limb's joints; up to 1.2 on people, 2 on toys
+constexpr double kNoMatch = 2.1;                    // mean cost of a limb's joints; up to 1.2 on people, 2 on toys
 constexpr double kSunken = 2, kSunkenDepth = 0.01;  // of the other side's depth, and heights more
 constexpr double kThinnest = 0.005;                 // heights that limbs are deep, at least
 // Least way of a head's top above the shoulders, over that from the hips to these: 0.35 and more on people and robots,
 // up to 0.2 where the head is cut off.
-constexpr double kLeastHead = 0.28;
+constexpr double kMinHead = 0.28;
 constexpr double kWithin = 0.04;  // heights
 constexpr double kAcross = 0.5;   // most cosine between a limb and what lies across from it
 
 // Whether the way across from the limb's last joint but the tip straight to that of the other side stays inside the
 // body. Along the limbs it may: so it does from hand to hand of stretched arms.
-bool sharesItsEnd(const TemplateSkeleton& skeleton, const TemplateLimb& limb, const std::vector<Vec3>& places,
+bool hasCommonEnd(const TemplateSkeleton& skeleton, const TemplateLimb& limb, const std::vector<Vec3>& positions,
                   const BodyVolume& body, const AnatomicalFrame& frame) {
   constexpr int kSteps = 24;
   const std::size_t count = limb.placed.size();
@@ -29,17 +29,18 @@ bool sharesItsEnd(const TemplateSkeleton& skeleton, const TemplateLimb& limb, co
   const Index end = limb.placed[count - 2];
   const std::optional<Index> mirror = skeleton.joints[end].mirror;
   if (!mirror || *mirror == end) return false;
-  const Vec3 way = places[*mirror] - places[end], bone = places[end] - places[limb.placed[count - 3]];
-  if (std::abs(way.dot(bone)) > kAcross * way.norm() * bone.norm()) return false;
+  const Vec3 displacement = positions[*mirror] - positions[end],
+             bone = positions[end] - positions[limb.placed[count - 3]];
+  if (std::abs(displacement.dot(bone)) > kAcross * displacement.norm() * bone.norm()) return false;
   for (int step = 0; step <= kSteps; ++step) {
-    const Vec3 place = places[end] + static_cast<double>(step) / kSteps * way;
-    if (body.distance->at(frame.fromBody(place)) > 0) return false;
+    const Vec3 position = positions[end] + static_cast<double>(step) / kSteps * displacement;
+    if (body.distance->at(frame.fromBody(position)) > 0) return false;
   }
   return true;
 }
 
 // Whether half of a limb's joints and more, but for the first, lie on bones of other limbs.
-bool liesInAnother(const TemplateSkeleton& skeleton, const TemplateLimb& limb, const std::vector<Vec3>& places) {
+bool liesInAnother(const TemplateSkeleton& skeleton, const TemplateLimb& limb, const std::vector<Vec3>& positions) {
   // Bones of the limb and of all that hangs on it.
   std::vector<bool> own(skeleton.jointCount(), false);
   for (const Index j : limb.joints) own[j] = true;
@@ -48,11 +49,11 @@ bool liesInAnother(const TemplateSkeleton& skeleton, const TemplateLimb& limb, c
   }
   std::size_t within = 0;
   for (std::size_t k = 1; k < limb.placed.size(); ++k) {
-    const Vec3& place = places[limb.placed[k]];
+    const Vec3& position = positions[limb.placed[k]];
     for (Index j = 0; j < skeleton.jointCount(); ++j) {
       const std::optional<Index> parent = skeleton.joints[j].parent;
       if (!parent || own[j]) continue;
-      if (distanceToBone(place, places[*parent], places[j]) < kWithin) {
+      if (distanceToBone(position, positions[*parent], positions[j]) < kWithin) {
         ++within;
         break;
       }
@@ -62,21 +63,22 @@ bool liesInAnother(const TemplateSkeleton& skeleton, const TemplateLimb& limb, c
 }
 
 // Heights that the last bone before a tip lies deep in the body, in the mean.
-double depthOfEnd(const TemplateLimb& limb, const std::vector<Vec3>& places, const BodyVolume& body,
+double depthOfEnd(const TemplateLimb& limb, const std::vector<Vec3>& positions, const BodyVolume& body,
                   const AnatomicalFrame& frame) {
   constexpr int kSteps = 4;
-  const Vec3 &from = places[limb.placed[limb.placed.size() - 3]], &to = places[limb.placed[limb.placed.size() - 2]];
+  const Vec3 &from = positions[limb.placed[limb.placed.size() - 3]],
+             &to = positions[limb.placed[limb.placed.size() - 2]];
   double depth = 0;
   for (int step = 1; step <= kSteps; ++step) {
-    const Vec3 place = from + static_cast<double>(step) / kSteps * (to - from);
-    depth -= body.distance->at(frame.fromBody(place)) / (kSteps * frame.height);
+    const Vec3 position = from + static_cast<double>(step) / kSteps * (to - from);
+    depth -= body.distance->at(frame.fromBody(position)) / (kSteps * frame.height);
   }
   return depth;
 }
 
 // Whether a limb ends far deeper in the body than that of the other side: it lies in the trunk, where that has a place.
 bool isSunken(const TemplateSkeleton& skeleton, const TemplateLimb& limb, const std::vector<TemplateLimb>& limbs,
-              const std::vector<Vec3>& places, const BodyVolume& body, const AnatomicalFrame& frame) {
+              const std::vector<Vec3>& positions, const BodyVolume& body, const AnatomicalFrame& frame) {
   if (limb.placed.size() < 3 || skeleton.joints[limb.placed.back()].role != TemplateRole::kTip) return false;
   const std::optional<Index> mirror = skeleton.joints[limb.placed.back()].mirror;
   if (!mirror) return false;
@@ -84,8 +86,8 @@ bool isSunken(const TemplateSkeleton& skeleton, const TemplateLimb& limb, const 
     return one.placed.size() == limb.placed.size() && one.placed.back() == *mirror;
   });
   if (other == limbs.end()) return false;
-  const double thick = std::max(kThinnest, depthOfEnd(*other, places, body, frame));
-  return depthOfEnd(limb, places, body, frame) > kSunken * thick + kSunkenDepth;
+  const double thick = std::max(kThinnest, depthOfEnd(*other, positions, body, frame));
+  return depthOfEnd(limb, positions, body, frame) > kSunken * thick + kSunkenDepth;
 }
 
 }  // namespace
@@ -118,9 +120,9 @@ std::vector<TemplateLimb> limbChains(const TemplateSkeleton& skeleton) {
   return limbs;
 }
 
-double distanceToBone(const Vec3& place, const Vec3& a, const Vec3& b) {
-  const double along = std::clamp((place - a).dot(b - a) / std::max((b - a).squaredNorm(), 1e-12), 0.0, 1.0);
-  return (place - a - along * (b - a)).norm();
+double distanceToBone(const Vec3& position, const Vec3& a, const Vec3& b) {
+  const double along = std::clamp((position - a).dot(b - a) / std::max((b - a).squaredNorm(), 1e-12), 0.0, 1.0);
+  return (position - a - along * (b - a)).norm();
 }
 
 std::vector<TemplateLimb> limbsIn(const TemplateSkeleton& skeleton, const TemplateEmbedding& embedding,
@@ -129,28 +131,29 @@ std::vector<TemplateLimb> limbsIn(const TemplateSkeleton& skeleton, const Templa
   for (TemplateLimb& limb : limbs) {
     double cost = 0;
     for (const Index j : limb.placed) cost += embedding.costs[j] / static_cast<double>(limb.placed.size());
-    limb.hasPlace = cost < kNoPlace && !sharesItsEnd(skeleton, limb, embedding.places, body, frame) &&
-                    !isSunken(skeleton, limb, limbs, embedding.places, body, frame) &&
-                    !(skeleton.bent() && liesInAnother(skeleton, limb, embedding.places));
+    limb.hasMatch = cost < kNoMatch && !hasCommonEnd(skeleton, limb, embedding.positions, body, frame) &&
+                    !isSunken(skeleton, limb, limbs, embedding.positions, body, frame) &&
+                    !(skeleton.bent() && liesInAnother(skeleton, limb, embedding.positions));
   }
   return limbs;
 }
 
-void findHeadless(const TemplateSkeleton& skeleton, const std::vector<Vec3>& places, std::vector<TemplateLimb>& limbs) {
+void findHeadless(const TemplateSkeleton& skeleton, const std::vector<Vec3>& positions,
+                  std::vector<TemplateLimb>& limbs) {
   if (!isHumanoid(skeleton) || skeleton.bent()) return;
-  const auto at = [&](const char* joint) -> const Vec3& { return places[skeleton.find(joint).value()]; };
+  const auto at = [&](const char* joint) -> const Vec3& { return positions[skeleton.find(joint).value()]; };
   const Vec3 shoulders = 0.5 * (at("leftUpperArm") + at("rightUpperArm")), trunk = shoulders - at("hips");
-  if ((at("headTip") - shoulders).dot(trunk) > kLeastHead * trunk.squaredNorm()) return;
+  if ((at("headTip") - shoulders).dot(trunk) > kMinHead * trunk.squaredNorm()) return;
   const Index head = skeleton.find("head").value();
   for (TemplateLimb& limb : limbs) {
-    if (std::find(limb.joints.begin(), limb.joints.end(), head) != limb.joints.end()) limb.hasPlace = false;
+    if (std::find(limb.joints.begin(), limb.joints.end(), head) != limb.joints.end()) limb.hasMatch = false;
   }
 }
 
-std::string limbsWithoutPlace(const TemplateSkeleton& skeleton, const std::vector<TemplateLimb>& limbs) {
+std::string unmatchedLimbs(const TemplateSkeleton& skeleton, const std::vector<TemplateLimb>& limbs) {
   std::string names;
   for (const TemplateLimb& limb : limbs) {
-    if (limb.hasPlace) continue;
+    if (limb.hasMatch) continue;
     const std::string &first = skeleton.joints[limb.joints.front()].name,
                       &last = skeleton.joints[limb.joints.back()].name;
     names += names.empty() ? "" : ", ";

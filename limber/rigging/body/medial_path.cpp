@@ -1,4 +1,4 @@
-#include "limber/rigging/body/medial_way.h"
+#include "limber/rigging/body/medial_path.h"
 
 #include <algorithm>
 #include <limits>
@@ -9,8 +9,8 @@ namespace {
 
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
-std::size_t nearestSphere(const std::vector<MedialSphere>& spheres, const Vec3& place) {
-  const auto apart = [&](const MedialSphere& sphere) { return (sphere.center - place).norm() - sphere.radius; };
+std::size_t nearestSphere(const std::vector<MedialSphere>& spheres, const Vec3& position) {
+  const auto apart = [&](const MedialSphere& sphere) { return (sphere.center - position).norm() - sphere.radius; };
   const auto nearest =
       std::min_element(spheres.begin(), spheres.end(),
                        [&](const MedialSphere& a, const MedialSphere& b) { return apart(a) < apart(b); });
@@ -25,7 +25,7 @@ bool joined(const BodyVolume& body, const MedialSphere& a, const MedialSphere& b
 
 }  // namespace
 
-std::vector<Vec3> medialWay(const BodyVolume& body, const Vec3& from, const Vec3& to) {
+std::vector<Vec3> medialPath(const BodyVolume& body, const Vec3& from, const Vec3& to) {
   const std::vector<MedialSphere>& spheres = body.spheres;
   if (spheres.empty()) return {};
   // Dijkstra from the end, so that the way comes out in order.
@@ -48,21 +48,21 @@ std::vector<Vec3> medialWay(const BodyVolume& body, const Vec3& from, const Vec3
       next[s] = at;
     }
   }
-  std::vector<Vec3> way;
-  for (std::size_t at = first; at != kNone; at = next[at]) way.push_back(spheres[at].center);
-  return way;
+  std::vector<Vec3> path;
+  for (std::size_t at = first; at != kNone; at = next[at]) path.push_back(spheres[at].center);
+  return path;
 }
 
-Vec3 alongWay(const std::vector<Vec3>& way, double share) {
+Vec3 alongPath(const std::vector<Vec3>& path, double fraction) {
   double whole = 0;
-  for (std::size_t i = 1; i < way.size(); ++i) whole += (way[i] - way[i - 1]).norm();
-  double left = share * whole;
-  for (std::size_t i = 1; i < way.size(); ++i) {
-    const double step = (way[i] - way[i - 1]).norm();
-    if (left <= step && step > 0) return way[i - 1] + left / step * (way[i] - way[i - 1]);
+  for (std::size_t i = 1; i < path.size(); ++i) whole += (path[i] - path[i - 1]).norm();
+  double left = fraction * whole;
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    const double step = (path[i] - path[i - 1]).norm();
+    if (left <= step && step > 0) return path[i - 1] + left / step * (path[i] - path[i - 1]);
     left -= step;
   }
-  return way.back();
+  return path.back();
 }
 
 }  // namespace limber

@@ -14,7 +14,7 @@ Affine jointFrame(const SessionState& state, const std::string& joint);
 Affine toScene(std::span<const SceneMember> members, std::size_t member);
 
 // Of the bound surface, in the space that `place` brings it to.
-Box boxOf(const Session& session, const Affine& place);
+Box boxOf(const Session& session, const Affine& transform);
 
 // Beside the members that there are, on the ground that the first one stands on.
 Placement besideOthers(std::span<const SceneMember> members, const Session& added);

@@ -9,15 +9,15 @@ namespace limber {
 
 // What a limb takes of space: places along its middle, and the bones beyond its root.
 struct LimbSpace {
-  struct Place {
+  struct Sample {
     Vec3 at;
     double thick;
   };
   struct Bone {
-    Vec3 from, way;
+    Vec3 from, direction;
     double perLength2, thick;
   };
-  std::array<Place, 8> places;
+  std::array<Sample, 8> samples;
   std::array<Bone, 3> bones;
   Vec3 middle;       // of a ball that holds all of it
   double reach = 0;  // radius of that ball
@@ -26,6 +26,6 @@ struct LimbSpace {
 LimbSpace spaceOf(const Figure& figure, int limb);
 
 // Of each of both in the other, summed; 0 where they are apart.
-double sharedPlace(const LimbSpace& a, const LimbSpace& b);
+double limbOverlap(const LimbSpace& a, const LimbSpace& b);
 
 }  // namespace limber

@@ -14,19 +14,19 @@ struct Knot {
 template <typename Value>
 Value between(const Knot<Value>& from, const Knot<Value>& to, double seconds, double time) {
   const double s = time / seconds, s2 = s * s, s3 = s2 * s;
-  const Value way = to.at - from.at, v0 = seconds * from.speed, v1 = seconds * to.speed;
+  const Value displacement = to.at - from.at, v0 = seconds * from.speed, v1 = seconds * to.speed;
   const Value a0 = seconds * seconds * from.acceleration, a1 = seconds * seconds * to.acceleration;
-  return from.at + s * v0 + 0.5 * s2 * a0 + s3 * (10 * way - 6 * v0 - 4 * v1 - 1.5 * a0 + 0.5 * a1) +
-         s3 * s * (-15 * way + 8 * v0 + 7 * v1 + 1.5 * a0 - a1) +
-         s3 * s2 * (6 * way - 3 * v0 - 3 * v1 - 0.5 * a0 + 0.5 * a1);
+  return from.at + s * v0 + 0.5 * s2 * a0 + s3 * (10 * displacement - 6 * v0 - 4 * v1 - 1.5 * a0 + 0.5 * a1) +
+         s3 * s * (-15 * displacement + 8 * v0 + 7 * v1 + 1.5 * a0 - a1) +
+         s3 * s2 * (6 * displacement - 3 * v0 - 3 * v1 - 0.5 * a0 + 0.5 * a1);
 }
 
 // From `from`, where it has that speed and acceleration, to `to`, where it rests; `share` 0 to 1. Speed and
 // acceleration per whole way.
 template <typename Value>
-Value smoothWay(const Value& from, const Value& speed, const Value& acceleration, const Value& to, double share) {
+Value smoothPath(const Value& from, const Value& speed, const Value& acceleration, const Value& to, double fraction) {
   const Value none = 0 * from;
-  return between<Value>({from, speed, acceleration}, {to, none, none}, 1, share);
+  return between<Value>({from, speed, acceleration}, {to, none, none}, 1, fraction);
 }
 
 inline constexpr double kGravity = 9.81;  // metres a second squared

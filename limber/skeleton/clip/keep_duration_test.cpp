@@ -1,11 +1,11 @@
-#include "limber/skeleton/clip/held_clip.h"
+#include "limber/skeleton/clip/keep_duration.h"
 
 #include <gtest/gtest.h>
 
 namespace limber {
 namespace {
 
-TEST(HeldClip, LastsAsLongAsItsFrames) {
+TEST(KeepDuration, LastsAsLongAsItsFrames) {
   const std::vector<float> times = {0, 0.5f, 1};
   Clip clip;
   clip.translations.push_back({2, Interpolation::kLinear, {0}, {Vec3f(1, 2, 3)}});
@@ -15,7 +15,7 @@ TEST(HeldClip, LastsAsLongAsItsFrames) {
   for (const Vec3f& value : clip.translations[0].values) EXPECT_EQ(value, Vec3f(1, 2, 3));
 }
 
-TEST(HeldClip, WhatMovesThatLongStaysAsItIs) {
+TEST(KeepDuration, WhatMovesThatLongStaysAsItIs) {
   Clip clip;
   clip.rotations.push_back({0, Interpolation::kLinear, {0}, {Eigen::Quaternionf::Identity()}});
   clip.translations.push_back({2, Interpolation::kLinear, {0, 1}, {Vec3f(1, 2, 3), Vec3f(1, 2, 4)}});
