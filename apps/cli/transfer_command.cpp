@@ -8,13 +8,13 @@
 
 #include "command.h"
 #include "limber/actions/export/write_model.h"
-#include "limber/actions/rig/smpl_body.h"
 #include "limber/actions/transfer/transfer_asset.h"
 #include "limber/core/counted.h"
 #include "limber/core/text/names.h"
 #include "limber/document/gltf/json_text.h"
 #include "limber/document/read.h"
 #include "limber/document/smpl/smpl_arrays.h"
+#include "limber/document/smpl/smpl_body.h"
 #include "limber/preview/surface_colors.h"
 #include "progress_line.h"
 

@@ -8,11 +8,11 @@
 
 #include <fmt/format.h>
 
-#include "limber/actions/obj_vertices.h"
 #include "limber/core/counted.h"
 #include "limber/core/error.h"
 #include "limber/core/file/file.h"
 #include "limber/core/text/names.h"
+#include "limber/document/mesh/obj_vertices.h"
 
 namespace limber {
 

@@ -12,10 +12,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "limber/actions/obj_vertices.h"
 #include "limber/actions/rig/rig_from_animation.h"
 #include "limber/core/error.h"
 #include "limber/document/gltf/accessor.h"
+#include "limber/document/mesh/obj_vertices.h"
 #include "limber/document/scene/geometry.h"
 #include "limber/document/write.h"
 

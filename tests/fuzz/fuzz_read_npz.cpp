@@ -2,8 +2,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "limber/actions/rig/smpl_body.h"
 #include "limber/document/smpl/smpl_arrays.h"
+#include "limber/document/smpl/smpl_body.h"
 #include "limber/document/smpl/smpl_motion.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "limber/actions/motion/blend_shapes.h"
 #include "limber/actions/report_json.h"
 #include "limber/actions/rig/accessories.h"
 #include "limber/actions/rig/figure_geometry.h"
@@ -19,6 +18,7 @@
 #include "limber/document/gltf/json_text.h"
 #include "limber/document/rig/rest_pose.h"
 #include "limber/document/rig/rig_io.h"
+#include "limber/document/scene/blend_shapes.h"
 #include "limber/document/scene/geometry.h"
 #include "limber/document/unique_names.h"
 #include "limber/geometry/mesh/face_orientation.h"

@@ -49,7 +49,7 @@ const char* const kEverything = R"({
                    "extensions": {"EXT_meshopt_compression": {"buffer": 40, "byteLength": 99},
                                   "ACME_table": {"columns": [{"bufferView": 41}]}}}]})";
 
-gltf::Document everything() {
+gltf::Document everyReference() {
   return gltf::documentOf(Json::parse(kEverything));
 }
 
@@ -60,7 +60,7 @@ std::map<ElementKind, std::multiset<Index>> referencesOf(const gltf::Document& d
 }
 
 TEST(References, AllAreFoundOnceUnderTheirKind) {
-  const auto found = referencesOf(everything());
+  const auto found = referencesOf(everyReference());
   EXPECT_THAT(found.at(ElementKind::kNode), UnorderedElementsAre(1, 2, 6, 8, 9, 10, 19, 20, 24));
   EXPECT_THAT(found.at(ElementKind::kMesh), ElementsAre(3));
   EXPECT_THAT(found.at(ElementKind::kSkin), ElementsAre(4));
@@ -77,13 +77,13 @@ TEST(References, AllAreFoundOnceUnderTheirKind) {
 }
 
 TEST(References, VisitingChangesNothing) {
-  const gltf::Document document = everything();
+  const gltf::Document document = everyReference();
   referencesOf(document);
   EXPECT_EQ(gltf::jsonOf(document).dump(), Json::parse(kEverything).dump());
 }
 
 TEST(References, AllAreChangedWhereTheyStand) {
-  gltf::Document document = everything();
+  gltf::Document document = everyReference();
   const gltf::Document copy = document;
   changeReferences(document, [](ElementKind, Index& number) { number += 100; });
   const auto before = referencesOf(copy);
@@ -101,7 +101,7 @@ TEST(References, AllAreChangedWhereTheyStand) {
 }
 
 TEST(References, NumbersTakenOutLeaveListsAndMembers) {
-  gltf::Document document = everything();
+  gltf::Document document = everyReference();
   changeReferences(document, [](ElementKind kind, Index& number) {
     if (kind == ElementKind::kNode && number != 2 && number != 24) number = kNoIndex;
   });
@@ -138,14 +138,14 @@ TEST(References, OfWhatIsNoNumberNothingIsMade) {
 }
 
 TEST(References, ListsOfADocumentAreCounted) {
-  const gltf::Document document = everything();
+  const gltf::Document document = everyReference();
   EXPECT_EQ(elementCount(document, ElementKind::kNode), 1u);
   EXPECT_EQ(elementCount(document, ElementKind::kLight), 2u);
   EXPECT_EQ(elementCount(document, ElementKind::kVariant), 0u);
 }
 
 TEST(References, EveryObjectIsSeen) {
-  gltf::Document document = everything();
+  gltf::Document document = everyReference();
   std::size_t objects = 0;
   forEachObject(document, [&](gltf::Object& object) {
     ++objects;

@@ -88,12 +88,12 @@ std::optional<std::size_t> vmcBone(std::string_view name) {
 // A name and a transform in Unity's space, whose x points to the right: mirrored. Scales and offsets behind it, which
 // are for other uses, are not looked at.
 std::optional<Transform> transformIn(const OscMessage& message) {
-  constexpr std::size_t kNumbers = 7;
-  if (message.values.size() <= kNumbers || !std::holds_alternative<std::string_view>(message.values[0])) {
+  constexpr std::size_t kBoneNumbers = 7;
+  if (message.values.size() <= kBoneNumbers || !std::holds_alternative<std::string_view>(message.values[0])) {
     return std::nullopt;
   }
-  std::array<double, kNumbers> numbers;
-  for (std::size_t i = 0; i < kNumbers; ++i) {
+  std::array<double, kBoneNumbers> numbers;
+  for (std::size_t i = 0; i < kBoneNumbers; ++i) {
     const float* const value = std::get_if<float>(&message.values[i + 1]);
     if (!value || !(std::abs(*value) <= kFarthest)) return std::nullopt;
     numbers[i] = *value;

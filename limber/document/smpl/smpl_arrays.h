@@ -10,6 +10,8 @@
 
 namespace limber {
 
+inline constexpr std::size_t kMaxSmplVertices = 100'000'000;  // of a body; SMPL-X has 10,475
+
 // Throws Error kBadData, where() being "array.npy".
 [[noreturn]] void refuseSmplArray(const std::string& array, std::string what);
 

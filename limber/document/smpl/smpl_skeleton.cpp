@@ -15,7 +15,6 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kMaxVertices = 100'000'000;
 // How files write "none" in signed and unsigned integers.
 constexpr double kNoParents[] = {-1.0, 4294967295.0, 18446744073709551615.0};
 
@@ -173,7 +172,7 @@ Skeleton smplSkeleton(const NpzFiles& body, std::span<const Vec3> vertices) {
 
 std::vector<Vec3> smplVertices(const NpzFiles& body) {
   const NpyArray array = neededSmplArray(body, "v_template");
-  if (smplRowsOfThree(array, "v_template") > kMaxVertices) {
+  if (smplRowsOfThree(array, "v_template") > kMaxSmplVertices) {
     refuseSmplArray("v_template", "has more than 100 million rows");
   }
   return smplPoints(array, "v_template");

@@ -4,10 +4,10 @@
 #include <utility>
 
 #include "limber/actions/rig/rig_from_animation.h"
-#include "limber/actions/rig/smpl_body.h"
 #include "limber/actions/transfer/transfer_asset.h"
 #include "limber/core/text/names.h"
 #include "limber/document/smpl/smpl_arrays.h"
+#include "limber/document/smpl/smpl_body.h"
 
 namespace limber {
 

@@ -1,4 +1,4 @@
-#include "limber/actions/obj_vertices.h"
+#include "limber/document/mesh/obj_vertices.h"
 
 #include <cmath>
 #include <cstdint>

@@ -1,4 +1,4 @@
-#include "limber/actions/motion/blend_shapes.h"
+#include "limber/document/scene/blend_shapes.h"
 
 #include <algorithm>
 #include <map>

@@ -1,11 +1,11 @@
-#include "limber/actions/rig/smpl_body.h"
+#include "limber/document/smpl/smpl_body.h"
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-#include "limber/actions/motion/blend_shapes.h"
 #include "limber/actions/transfer/transfer_asset.h"
 #include "limber/document/rig/rig_io.h"
+#include "limber/document/scene/blend_shapes.h"
 #include "limber/document/testing/npy_bytes.h"
 #include "limber/rigging/transfer/testing/capsule_person.h"
 #include "warning_kinds.h"

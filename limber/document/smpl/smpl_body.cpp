@@ -1,4 +1,4 @@
-#include "limber/actions/rig/smpl_body.h"
+#include "limber/document/smpl/smpl_body.h"
 
 #include <algorithm>
 #include <array>
@@ -11,10 +11,10 @@
 
 #include <fmt/format.h>
 
-#include "limber/actions/motion/blend_shapes.h"
 #include "limber/core/known_error.h"
 #include "limber/document/gltf/accessor.h"
 #include "limber/document/rig/rig_io.h"
+#include "limber/document/scene/blend_shapes.h"
 #include "limber/document/smpl/smpl_arrays.h"
 #include "limber/document/smpl/smpl_skeleton.h"
 
@@ -24,7 +24,6 @@ namespace {
 
 constexpr std::size_t kMaxShapes = 10;
 constexpr std::size_t kMaxInfluences = 8;
-constexpr std::size_t kMaxVertices = 100'000'000;
 
 std::vector<std::uint32_t> readCorners(const NpzFiles& files, std::size_t vertices) {
   const NpyArray array = neededSmplArray(files, "f");
@@ -42,7 +41,7 @@ std::vector<std::uint32_t> readCorners(const NpzFiles& files, std::size_t vertic
 
 NpyArray readWeightRows(const NpzFiles& files, std::size_t vertices) {
   NpyArray array = neededSmplArray(files, "weights");
-  if (array.shape.size() != 2 || array.shape[1] == 0 || array.shape[1] > kMaxVertices) {
+  if (array.shape.size() != 2 || array.shape[1] == 0 || array.shape[1] > kMaxSmplVertices) {
     refuseSmplArray("weights", fmt::format("has the shape ({}), not (vertices, joints)", fmt::join(array.shape, ", ")));
   }
   checkSmplShape(array, "weights", {vertices, array.shape[1]});
