@@ -1,4 +1,4 @@
-// A model of many pieces of any size, and the way to a file.
+// A model of many pieces of any size, and a function that writes it to a file.
 #pragma once
 
 #include <filesystem>

@@ -101,7 +101,7 @@ void wholeBody(benchmark::State& state, RootMotion rootMotion) {
 BENCHMARK_CAPTURE(wholeBody, rootFixed, RootMotion::kFixed);
 BENCHMARK_CAPTURE(wholeBody, rootMoves, RootMotion::kTranslate);
 
-// A chain that bends to a point from one frame to the next, round a sphere in its way: grows with the joints.
+// A chain that bends to a point from one frame to the next, round a sphere as an obstacle: grows with the joints.
 void tasksOfChain(benchmark::State& state) {
   const auto joints = static_cast<Index>(state.range(0));
   const Skeleton skeleton = straightChain(joints, 0.9);

@@ -56,7 +56,7 @@ void weldToWeights(benchmark::State& state, Model&& model) {
   state.counters["skin_ms"] = sum.skin * toMilliseconds;
 }
 
-// Makes the model in a process of its own: what a process has held counts as the peak of those that it starts.
+// Makes the model in a process of its own: a process's peak memory counts as that of those that it starts.
 bool writeModelApart(Index vertices, const std::string& path) {
   const pid_t child = fork();
   if (child == 0) {

@@ -31,7 +31,7 @@ void fitCreature(benchmark::State& state, const char* name) {
   fit(state, creature(static_cast<Index>(state.range(0)), true), name);
 }
 
-// Found as a figure only after its embedding is in doubt: the longest way there is.
+// Found as a figure only after its embedding is in doubt: the slowest path through the rigger.
 void fitStatue(benchmark::State& state) {
   fit(state, statue(static_cast<Index>(state.range(0))), "humanoid");
 }

@@ -1,6 +1,6 @@
 // Shared walks and runs joined and blended on shared characters: feet and smoothness against those of the motions
-// themselves, by the judge's detector of rest (limber/evaluate/motion/contact_oracle.h), which shares nothing with what
-// plants feet.
+// themselves, by the judge's detector of rest (limber/evaluate/motion/contact_oracle.h), which is independent of the
+// code that plants feet.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -29,7 +29,7 @@ std::map<std::string_view, Vec3> bonesOfPerson(const Skeleton& skeleton) {
   return bones;
 }
 
-// The person's bones of `source` that the joints at their own places follow.
+// The person's bones of `source` whose joints match joints at the same positions.
 std::set<std::string_view> followedInPlace(const Skeleton& source, const Skeleton& target) {
   const std::vector<Affine> from = restGlobals(source), to = restGlobals(target);
   Box box;

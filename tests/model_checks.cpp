@@ -171,7 +171,7 @@ GlbParts splitGlb(ByteSpan bytes) {
 }
 
 // Each element of the first array, but the `replaced` ones, is, after `reduce`, the element of the second at the same
-// place.
+// index.
 template <typename Reduce>
 void expectPrefix(const Json& before, const Json& after, const char* key, const Reduce& reduce,
                   const std::set<std::size_t>& replaced = {}) {
@@ -182,7 +182,7 @@ void expectPrefix(const Json& before, const Json& after, const char* key, const 
   }
 }
 
-// The accessors of joints and weights: new weights take their places.
+// The accessors of joints and weights, which new weights replace.
 std::set<std::size_t> skinAccessors(const Json& document) {
   std::set<std::size_t> result;
   for (const Json& mesh : arrayOf(document, "meshes"))

@@ -44,7 +44,7 @@ void writeOutput(const std::string& name, const Bytes& glb, const fs::path& sour
   if (!source.empty()) noteSource(path, source);
 }
 
-// What comes out must be read again, pass checkAsset on the way, and hold a sound rig for the model that went in.
+// The output must be readable, pass checkAsset, and contain a sound rig for the input model.
 void expectSoundRig(const Asset& before, const Geometry& geometry, const Rigged& result, Index maxInfluences) {
   const Asset after = readAsset(result.glb, "result.glb");
   const Geometry geometryAfter = collectGeometry(after);
@@ -192,7 +192,7 @@ TEST_P(RiggedModels, KeepTheirSkeleton) {
     // Made from another format's doubles, written as floats.
     EXPECT_TRUE(globalsBefore[j].isApprox(globalsAfter[j], 1e-6)) << before.skeleton.joints[j].name;
   }
-  // A second set of four influences goes where four are asked for, and with it its place among the accessors.
+  // A second set of four influences is removed where four are requested, and so is its accessor.
   const bool hasSecondSet = documentJson(asset).dump().find("\"JOINTS_1\"") != std::string::npos;
   if (path_.extension() == ".glb" && asset.warnings.empty() && !hasSecondSet)
     expectOnlyAdditions(readFile(path_), result.glb, result.report);

@@ -104,8 +104,8 @@ TEST_P(RetargetMatrix, EveryHumanoidKeepsFeetAndGround) {
   spreads.depth.expectAllBelow(9, "depth");
   spreads.slides.expectAllBelow(1e-4, "sliding over the source's");
   spreads.sliding.expectBelow(0.02, 0.99, "sliding");
-  // The last bit of a frame time decides between two ways of spacetime's: the same walk as 0.0083333 and 0.00833333 s a
-  // frame comes out with 0.99 and 0.69 of the source's jerk. So one pair in two hundred may be beyond.
+  // The last bit of a frame time decides between two results of spacetime: the same walk at 0.0083333 and 0.00833333 s
+  // a frame comes out with 0.99 and 0.69 of the source's jerk. So one pair in two hundred may be beyond.
   const bool isSpacetime = std::string_view(GetParam()) == "spacetime";
   spreads.jerk.expectBelow(1.1, isSpacetime ? 0.995 : 1, "jerk");
   spreads.jerk.expectAllBelow(isSpacetime ? 1.2 : 1.1, "jerk");

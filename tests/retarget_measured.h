@@ -30,7 +30,7 @@ inline bool isOfLeg(const RetargetSetup& setup, Index joint) {
 class Spread {
  public:
   void add(double value, std::string pair) { values_.emplace_back(value, std::move(pair)); }
-  // At least that share of the pairs is below.
+  // At least that fraction of the pairs is below.
   void expectBelow(double bound, double fraction, const char* what) {
     ASSERT_FALSE(values_.empty()) << what;
     std::sort(values_.begin(), values_.end());
@@ -53,8 +53,8 @@ struct Spreads {
   Spread sliding;  // of planted feet, likewise
   Spread jerk;     // over the source's
   Spread turned;   // bones, degrees, mean
-  Spread lost;     // contacts, share
-  Spread free;     // share of the frames in which the source's feet are not planted
+  Spread lost;     // contacts, fraction
+  Spread free;     // fraction of the frames in which the source's feet are not planted
 
   void add(const MotionMetrics& result, double sourceDepth, const std::string& pair) {
     depth.add(1700 * (result.penetration - sourceDepth), pair);

@@ -3,7 +3,7 @@
 
 namespace limber::testing {
 
-// Below the shared folder's "rigged": people, and what stands like them, each with its artist's rig.
+// Below the shared folder's "rigged": people and other upright bipeds, each with its artist's rig.
 inline constexpr const char* kSharedPeople[] = {"cesium_man.glb",
                                                 "kaykit_mannequin/manny_med_mod.gltf",
                                                 "kenney_human.glb",

@@ -57,7 +57,7 @@ TEST_P(TemplateCharacters, ComeNearTheArtistsSkeleton) {
   EXPECT_LT(comparison.namedMean, 4);
   EXPECT_LT(comparison.withoutFingers.jointToJoint, 3.5);
   for (const NamedJointError& error : comparison.named) {
-    // Left in place of right is off by far more.
+    // Left instead of right is off by far more.
     if (error.bone.find("Hand") != std::string::npos || error.bone.find("Foot") != std::string::npos) {
       EXPECT_LT(error.percent, 6) << error.bone;
     }
@@ -116,7 +116,7 @@ TEST(TemplateMeans, OfAnimals) {
 }
 
 // Skeletons of characters and motions as a user's own templates: arms level, lowered and hanging, with fingers, twist
-// joints, roots on the ground and feet that hang on them, on bodies whose arms are held otherwise.
+// joints, roots on the ground and feet that are their children, on bodies whose arms are posed otherwise.
 class OwnTemplates : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(OwnTemplates, FindPeopleHoweverTheArmsAreHeld) {
@@ -290,9 +290,9 @@ INSTANTIATE_TEST_SUITE_P(Meshes, TemplateMisfits,
                            return std::filesystem::path(file.param).stem().string();
                          });
 
-// Statues that crouch, sit, and lean on a trunk, and are one piece with their plinths; places are read off the marble.
-// The right knee of the one who crouches, whose shank is pressed between its thigh and the plinth, is found too far
-// back.
+// Statues that crouch, sit, and lean on a trunk, and are one piece with their plinths; positions are read off the
+// marble. The right knee of the one who crouches, whose shank is pressed between its thigh and the plinth, is found
+// too far back.
 struct Statue {
   const char* file;
   std::vector<JointPin> expected;
@@ -450,7 +450,7 @@ TEST(TemplateSamples, ABipedIsAPerson) {
   writeFile(testOutputFolder() / "template_biped.glb", result.glb);
 }
 
-// What exporters and scenes do to a body that stands on y = 0.
+// What exporters and scenes do to a body whose feet are at y = 0.
 struct Flaw {
   const char *name, *warning;
   std::size_t (*spoil)(TriMesh& mesh);  // how many triangles the warning is to count

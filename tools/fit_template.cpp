@@ -1,8 +1,8 @@
 // Fits the proportions of people (limber/rigging/templates/humanoid_landmarks.h) to characters whose joints have names:
 //   limber_fit_template FILE...
-// Coordinate descent on the mean distance of named joints, in percent of the height. Files of one maker often share a
-// skeleton, so each maker (a name's part before the first '_') is also left out once: what the others' fit does on its
-// files is the error to expect of models never seen. Prints both, and the values to put into the header.
+// Coordinate descent on the mean distance of named joints, in percent of the height. Files of one maker often have the
+// same skeleton, so each maker (a name's part before the first '_') is also left out once: the error of the others' fit
+// on its files is the error to expect of models never seen. Prints both, and the values to put into the header.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -56,7 +56,7 @@ struct Character {
   std::string maker;
   BodyVolume body;
   TemplateFit fit;
-  std::vector<std::pair<Index, Vec3>> truth;  // joint of the template, place in body space
+  std::vector<std::pair<Index, Vec3>> truth;  // joint of the template, position in body space
 };
 
 Character readCharacter(const std::filesystem::path& file) {

@@ -54,7 +54,7 @@ TEST_F(AnimationRig, WhatCannotBeServedIsOneLineAndLeavesNoFile) {
 
 TEST_F(AnimationRig, OfObjFilesIsEvaluatedOverAFolder) {
   fs::create_directory(folder_ / "models");
-  // Two triangles, the second of which turns up about the edge that they share.
+  // Two triangles, the second of which rotates upwards about their common edge.
   for (const auto& [name, corner] :
        {std::pair{"f1.obj", "1 1 0"}, {"f2.obj", "0.9 0.9 0.3"}, {"f3.obj", "0.7 0.7 0.4"}}) {
     put(name, std::string("v 0 0 0\nv 1 0 0\nv 0 1 0\nv ") + corner + "\nf 1 2 3\nf 2 4 3\n");

@@ -227,7 +227,7 @@ TEST_F(CliRoundTrip, EveryModelBecomesAUsdWithTheClip) {
   }
 }
 
-// The measure notices a joint that is a thousandth of the size from its place, and a clip that is late.
+// The measure notices a joint that is displaced by a thousandth of the size, and a clip that is late.
 TEST_F(CliRoundTrip, AMotionThatIsSpoiledIsNotTheSame) {
   const Motion before = motion("from.bvh");
   Motion moved = before;

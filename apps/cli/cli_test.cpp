@@ -139,7 +139,7 @@ TEST_F(Cli, StandardInputAndOutputCarryTheSameBytesAsFiles) {
   const Result piped = run({"rig", "-", "--handles", "9", "-o", "-"}, content("robot.glb"));
   EXPECT_EQ(piped.code, 0);
   EXPECT_TRUE(piped.out == content("out.glb"));
-  EXPECT_THAT(piped.error, HasSubstr("total"));  // the account gives way to the file
+  EXPECT_THAT(piped.error, HasSubstr("total"));  // standard output has the file, so the report goes here
 }
 
 TEST_F(Cli, WritesGltfWithItsBuffer) {

@@ -1,4 +1,4 @@
-// What the subcommands share: how they are added, and where they print.
+// Common code of the subcommands: how they are added, and where they print.
 #pragma once
 
 #include <string>
@@ -72,7 +72,7 @@ std::string joinNames(const std::vector<std::string>& names);
 // Throws Error kBadArgument unless the name ends in one of the extensions (".glb") or is "-".
 void checkOutput(std::string_view path, const std::vector<std::string_view>& extensions);
 
-// A file written beside the result, named by `option`, must take the place of none of the others: throws
+// A file written beside the result, named by `option`, must overwrite none of the others: throws
 // CLI::ValidationError where it does, by whatever path.
 void checkBeside(const std::string& option, const std::string& path, const std::vector<std::string>& others);
 

@@ -1,5 +1,5 @@
-// limber convert: motions, and models that move, from one file format to another, cut, mirrored and sampled anew on the
-// way.
+// limber convert: motions, and models that move, from one file format to another; they can be cut, mirrored and
+// resampled as well.
 #include <algorithm>
 #include <cmath>
 
@@ -116,7 +116,7 @@ bool moves(const Clip& clip) {
   return !clip.translations.empty() || !clip.rotations.empty() || !clip.scales.empty();
 }
 
-// What comes before the edits of clips that commands share.
+// What comes before the edits of clips that are common to several commands.
 void trimAndMirror(Motion& motion, const ConvertArguments& options) {
   const SkeletonMirror mirror = options.mirror ? mirrorOf(motion.skeleton) : SkeletonMirror{};
   for (Clip& clip : motion.clips) {

@@ -1,4 +1,4 @@
-// limber crowd: many bodies of differing builds in one file, each with its own clip, moment and place.
+// limber crowd: many bodies of differing builds in one file, each with its own clip, time offset and position.
 #include <filesystem>
 #include <string>
 #include <vector>

@@ -113,7 +113,7 @@ void parseCall(CLI::App& program, const std::vector<std::string>& arguments) {
   program.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));  // CLI11 wants the last first
 }
 
-// Thrown in place of running a call. Its commands' callbacks cannot be taken out: they own what parsing writes to.
+// Thrown instead of running a call. Its commands' callbacks cannot be removed: they own what parsing writes to.
 struct CallMakesSense {};
 
 // CLI11 would only say that a subcommand is missing. Empty where the words before the first option name commands.

@@ -44,7 +44,7 @@ void parseSize(const std::string& text, PreviewOptions& options) {
   }
 }
 
-constexpr double kTurnSeconds = 4;  // of a turntable, all the way round
+constexpr double kTurnSeconds = 4;  // of a turntable's full rotation
 constexpr double kUsualFps = 20;
 
 bool showsClip(const PreviewArguments& options) {
@@ -72,7 +72,7 @@ std::vector<double> momentsOf(const PreviewArguments& options, double duration) 
   return {options.time.value_or(0)};
 }
 
-// About twice as many as rows, with as few places left empty as that allows.
+// About twice as many as rows, with as few cells left empty as that allows.
 int sheetColumns(int count) {
   const int widest = static_cast<int>(std::ceil(std::sqrt(2.0 * count))), rows = (count + widest - 1) / widest;
   return (count + rows - 1) / rows;

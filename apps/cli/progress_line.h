@@ -20,7 +20,7 @@ class TerminalProgress {
   Progress* operator->() { return &progress_; }
   // Closes the last stage and takes the line away, so that other text can follow.
   void finish();
-  // Draws `text` in place of the name and the percentage of the stage, until the next call; empty: these again.
+  // Draws `text` instead of the name and the percentage of the stage, until the next call; empty: these again.
   void describe(std::string text);
 
  private:

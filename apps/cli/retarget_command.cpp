@@ -36,7 +36,7 @@ struct RetargetArguments {
   MotionArguments motionFiles;
   ClipArguments clipEdits;
   TargetArguments target;
-  std::optional<Adapter> program;  // of the user's, in place of a method of limber's
+  std::optional<Adapter> program;  // of the user's, instead of a method of limber's
   CharactersArguments characters;
   CombineArguments combineArguments;
   std::optional<CombineOptions> combine;

@@ -154,7 +154,7 @@ std::vector<std::string> namesOf(std::span<const Method> methods) {
   return names;
 }
 
-// Programs of the user's in place of methods of limber's.
+// Programs of the user's instead of methods of limber's.
 struct RigPrograms {
   std::optional<Adapter> rigger, weights;
 };

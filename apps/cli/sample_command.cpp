@@ -66,7 +66,7 @@ void writeMotion(const Motion& motion, const std::string& output) {
   writeAsset(motionAsset(motion), output);
 }
 
-// As it stands, or how it came about.
+// The final scene, or the recording of how it was made.
 void writeScene(std::string_view commands, const std::string& output, Progress& progress) {
   if (lowerExtension(output) == ".json") return writeFile(output, asBytes(commands));
   SessionScene scene;

@@ -146,7 +146,7 @@ DrawnBy drawnBy(const limber::SessionState& state, const limber::Deformer& defor
 }
 
 // {"form": "weights"}, {"form": "engine"} or {"form": "rows", "vertices", "entries"} with the rows as floats: of each
-// vertex its place (x, y, z), then of each its first entry and how many there are; of each entry its four joints and 16
+// vertex its position (x, y, z), then of each its first entry and their count; of each entry its four joints and 16
 // moments.
 CallResult deformationOf(const limber::SessionState& state) {
   const limber::Deformer& deformer = limber::findDeformer(state.deformer);
@@ -182,14 +182,14 @@ CallResult posedOf(const limber::SessionState& state, ShadingNormals& normals) {
   return {true, std::move(bytes), "{}"};
 }
 
-// Of the joints that hold on to a place, which feet do where they stand at a clip's moment.
+// The pinned joints; at a clip's time these are the feet that are planted then.
 std::string pinnedOf(const limber::SessionState& state) {
   Json pinned = Json::array();
   for (const limber::PinnedTarget& target : state.targets) pinned.push_back(target.joint);
   return textOf({{"pinned", pinned}});
 }
 
-// A drag's updates and a clip's moments come once a frame and change nothing but the pose, and which feet stand.
+// A drag's updates and a clip's times come once a frame and change nothing but the pose, and which feet are planted.
 CallResult stateAfter(const limber::SessionScene& scene, const limber::Command& command) {
   const bool frame =
       std::holds_alternative<limber::UpdateDrag>(command) || std::holds_alternative<limber::TurnDrag>(command) ||
@@ -454,7 +454,7 @@ LIMBER_EXPORT CallResult* limber_session_model(const SessionHandle* handle) {
   return guarded({}, [&] { return surfaceOf(*handle->session().state().rig); });
 }
 
-// How the surface is bent in drawing, and as it stands now where the engine does that.
+// How the surface is deformed in drawing, and its current positions where the engine deforms it.
 LIMBER_EXPORT CallResult* limber_session_deformation(const SessionHandle* handle) {
   return guarded({}, [&] { return deformationOf(handle->session().state()); });
 }

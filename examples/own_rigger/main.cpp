@@ -1,5 +1,5 @@
-// own_rigger MODEL RIGGED.glb: a rigger of one's own, a spine along the longest side, with limber's weights. It takes
-// the place of your method: a skeleton is all that it gives.
+// own_rigger MODEL RIGGED.glb: a rigger of one's own, a spine along the longest side, with limber's weights. Replace
+// it by your method: a skeleton is all that it returns.
 #include <cstdio>
 
 #include <limber/limber.h>

@@ -23,11 +23,11 @@ int main(int argc, char** argv) {
       std::printf("%s: %.1f mm left\n", reach.joint.c_str(), 1000 * reach.distance);
     }
 
-    // The surface as it stands, by any deformer: an OBJ to print.
+    // The posed surface, by any deformer: an OBJ to print.
     const limber::PosedGeometry posed = limber::posedGeometry(model, rig, pose, limber::findDeformer("delta-mush"));
     limber::writeMesh(limber::exportMesh(model, posed.geometry), argv[3]);
 
-    // The rig as it stands: it can be posed on.
+    // The posed rig, which can be posed further.
     limber::writeNodePose(model, rig, pose);
     limber::writeAsset(model, argv[2]);
   } catch (const limber::Error& error) {

@@ -130,7 +130,8 @@ TEST_F(ObjSeriesFiles, FacesMayCountBackwardsAndLinesBeContinued) {
   EXPECT_EQ(turned.animation.sequence.at(2, 1), Vec3f(0, 1, 0));
 }
 
-// The model is the first frame's, whichever way that counts: faces, texture coordinates and normals are the same.
+// The model is the first frame's, whether its indices count forwards or backwards: faces, texture coordinates and
+// normals are the same.
 TEST_F(ObjSeriesFiles, AFirstFrameThatCountsBackwardsIsTheSameModel) {
   const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n", uvs = "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
   const std::string lifted = "v 0 0 0\nv 1 0 0\nv 1 1 1\nv 0 1 1\n", normal = "vn 0 0 1\n";

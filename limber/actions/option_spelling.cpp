@@ -23,7 +23,7 @@ bool isOptionWord(std::string_view word) {
          std::all_of(word.begin(), word.end(), [](char c) { return (c >= 'a' && c <= 'z') || c == '-'; });
 }
 
-// What stands between two backticks.
+// Parses the text between two backticks.
 std::optional<WrittenOption> parseOption(std::string_view inside) {
   const std::size_t colon = inside.find(": ");
   const bool hasValue = colon != std::string_view::npos;

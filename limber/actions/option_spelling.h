@@ -1,6 +1,6 @@
 // Options by the names that a caller knows. The library writes an option between backticks, alone or with a value:
-// "`existing-rig: replace` takes it out first". It does so in what an error says to do, and as the place of an error
-// where one option is to blame; messages, and names of files and joints, are left as they are.
+// "`existing-rig: replace` takes it out first". It does so in an error's remedy, and in its where() if one option is to
+// blame; messages, and names of files and joints, are left as they are.
 #pragma once
 
 #include <string>
@@ -23,7 +23,7 @@ std::string spellOptions(std::string_view text, OptionSpelling spelling);
 // "`handles`", and nothing else.
 bool isOption(std::string_view text);
 
-// The error with its remedy, and a place that is an option, as the caller writes them.
+// The error with its remedy, and a where() that is an option, as the caller writes them.
 Error spellOptions(const Error& error, OptionSpelling spelling);
 
 }  // namespace limber

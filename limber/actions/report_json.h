@@ -8,7 +8,7 @@ namespace limber {
 
 struct AnimationRigReport;
 
-// Keys in the order of docs/report.md, in snake_case. Text out of the file stands in it as it is: dumpReport writes it.
+// Keys in the order of docs/report.md, in snake_case. Text from the file is kept as it is: dumpReport escapes it.
 Json toJson(const AutoRigReport& report);
 Json toJson(const AnimationRigReport& report);
 // [{"name", "seconds", "steps": the same, where there are any}]

@@ -27,10 +27,10 @@ struct AdapterStep {
   std::filesystem::path folder;      // that it works in, with placeholders; empty: the run's own
 };
 
-// Placeholders stand for absolute paths of one run, whose folder is gone after it, unless limber is killed:
+// Placeholders stand for absolute paths of one run, whose folder is removed after it, unless limber is killed:
 //   {folder}        the run's own
 //   {input}         the file that is handed over: {folder}/input/model.obj (or .glb)
-//   {motion}        of kind retarget in its place: {folder}/input/motion.bvh,
+//   {motion}        of kind retarget instead: {folder}/input/motion.bvh,
 //   {skeleton}      and {folder}/input/skeleton.bvh
 //   {input_folder}  {folder}/input, which holds nothing else
 //   {output}        the file that is read when the last step is done
@@ -47,7 +47,7 @@ struct Adapter {
   AdapterFormat inputFormat = AdapterFormat::kObj;
   AdapterUp inputUp = AdapterUp::kY;
   double inputSize = 1;           // the longest side of the box that is handed over; its centre is the origin
-  double inputMetresPerUnit = 1;  // of kind retarget, in place of a size
+  double inputMetresPerUnit = 1;  // of kind retarget, instead of a size
   bool takesWeights = true;  // of kind weights: else it is handed the skeleton, and each vertex with its nearest bone
 
   AdapterFormat outputFormat = AdapterFormat::kRignetText;

@@ -30,7 +30,7 @@ std::string adapterProblem(std::string_view text) {
   return "no error";
 }
 
-// The short one with something else in place of a piece of it.
+// The short one with a piece of it replaced.
 std::string changed(std::string_view piece, std::string_view other) {
   std::string text(kShort);
   text.replace(text.find(piece), piece.size(), other);

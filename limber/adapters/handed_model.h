@@ -1,4 +1,4 @@
-// The model as a program is given it: welded, turned and scaled; and the way back.
+// The model as a program is given it: welded, rotated and scaled; and the inverse.
 #pragma once
 
 #include <optional>
@@ -27,8 +27,8 @@ HandedModel handedModel(const TriMesh& working, const Adapter& adapter);
 // Numbers are written so that they read back equal.
 Bytes handedObj(const TriMesh& mesh);
 
-// The skeleton under a map that turns, scales evenly and moves. Rest scales are taken into the places of the joints:
-// the result has none.
+// The skeleton under a map that rotates, scales uniformly and translates. Rest scales are taken into the positions of
+// the joints: the result has none.
 Skeleton movedSkeleton(const Skeleton& skeleton, const Affine& map);
 
 }  // namespace limber

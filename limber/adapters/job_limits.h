@@ -7,7 +7,7 @@
 namespace limber {
 
 // {"seconds": 120, "memory_mb": 2048}; what is missing there stays as it is in `limits`, and all where there is no such
-// object. Throws Error kBadData at the place of what is wrong.
+// object. Throws Error kBadData that names the wrong entry.
 void readJobLimits(const JsonView& object, JobLimits& limits);
 
 }  // namespace limber

@@ -216,7 +216,7 @@ TEST_F(RetargetByProgram, WithoutRotationsTheCharacterRests) {
   expectSamePoses(skeleton, got, still, 2e-6);
 }
 
-// A character that lies in rest pose is handed over as it will stand, and what comes back stands.
+// A character that lies in rest pose is handed over upright, and so is the result.
 TEST_F(RetargetByProgram, ACharacterThatLiesIsHandedOverStanding) {
   const Quat turn(Eigen::AngleAxisd(-kPi / 2, Vec3::UnitX()));
   RetargetAssetOptions options;
@@ -373,7 +373,7 @@ TEST_F(RetargetByProgram, FramesMustBeThoseThatWereGiven) {
   expectSamePoses(puppet(), posesIn(asset), sampleFrames(puppet(), puppetMotion(puppet()).clips[0], kRate), 2e-6);
 }
 
-// Readers of a BVH cannot tell how long one stands who does not move.
+// Readers of a BVH cannot detect how long a motionless person rests.
 TEST_F(RetargetByProgram, OneWhoStandsStillStandsAsLong) {
   PoseSequence still;
   still.frameSeconds = 1 / kRate;

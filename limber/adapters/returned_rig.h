@@ -21,8 +21,8 @@ struct ReturnedRig {
 // rignet-text: vertices are those handed over, in their order; joints must lie in or beside the model, and near the
 // vertices that they move as the axes are.
 // glb, fbx: the surface in the file must be the model's own, in any order of vertices, with vertices doubled or the
-// triangles fewer. Each vertex takes after the one at its place, else after the nearest point of that surface. Its box
-// must be the model's; with Adapter::mayRescale it is first moved and scaled to it.
+// triangles fewer. Each vertex takes the weights of the one at its position, else of the nearest point of that surface.
+// Its box must be the model's; with Adapter::mayRescale it is first moved and scaled to it.
 //
 // Vertices for which the file gives no weights take those of what is nearest (warning "unbound-vertices").
 //

@@ -21,7 +21,7 @@ namespace limber {
 
 namespace {
 
-// Of the longest side: a joint that came back is the one at its place.
+// Of the longest side: a returned joint is matched to one this near.
 constexpr double kSameJoint = 0.01;
 
 void checkCanRig(const Asset& asset, const Adapter& adapter, const AutoRigOptions& options) {
@@ -67,8 +67,8 @@ SkinWeights handedWeights(const SkinWeights& source, const PreparedMesh& prepare
   return weights;
 }
 
-// The skeleton's joint that each one that came back is, by its name or else its place; none for those that are
-// nobody's. No two are the same one.
+// The skeleton's joint for each returned one, by its name or else its position; none for unmatched ones. No two are
+// the same joint.
 std::vector<std::optional<Index>> sameJoints(const Skeleton& returned, const Skeleton& own) {
   const std::vector<Affine> returnedAt = restGlobals(returned), ownAt = restGlobals(own);
   std::vector<std::optional<Index>> same(returned.joints.size());

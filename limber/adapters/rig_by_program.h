@@ -13,8 +13,8 @@ namespace limber {
 // Throws as runProgram and readReturnedRig do, and as autoRig does for a model with a rig; the asset is then as it was.
 AutoRigReport rigByProgram(Asset& asset, const Adapter& adapter, const AutoRigOptions& options, Progress& progress);
 
-// Makes the weights of a rigged model anew by an adapter of kind weights, likewise; the skeleton stays. Joints that
-// come back are known by their names, else by their places. Throws likewise, and Error kBadData where a joint that
+// Makes the weights of a rigged model anew by an adapter of kind weights, likewise; the skeleton stays. Returned
+// joints are matched by their names, else by their positions. Throws likewise, and Error kBadData where a joint that
 // moves something is none of the model's.
 Warnings weightsByProgram(Asset& asset, const Adapter& adapter, const WeightOptions& options, Progress& progress);
 

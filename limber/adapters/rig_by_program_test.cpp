@@ -35,7 +35,7 @@ using testing::nearestMadeJoint;
 using testing::putFile;
 using testing::shellAdapter;
 
-// Where the model stands in its world.
+// The model's placement in its world.
 Affine modelTransform() {
   Affine map = Affine::Identity();
   map.translate(Vec3(3, -2, 5));
@@ -84,7 +84,7 @@ class RigByProgram : public ::testing::Test {
     return "no error";
   }
 
-  // The rig is the made one where the model stands, and the model's own vertices are untouched.
+  // The rig is the made one under the model's transform, and the model's own vertices are untouched.
   static void expectMadeRig(const Asset& asset, const SkinWeights& expected, double tolerance) {
     const Asset untouched = offsetModel();
     EXPECT_EQ(readFloats(asset, 0), readFloats(untouched, 0));

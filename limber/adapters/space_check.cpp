@@ -15,7 +15,7 @@ namespace limber {
 
 namespace {
 
-// Of the model's longest side. Blender rounds places to floats in other units, and programs that take triangles away
+// Of the model's longest side. Blender rounds positions to floats in other units, and programs that remove triangles
 // move corners a little; axes and units differ by far more.
 constexpr double kSameBox = 0.02;
 // Joints of wings, skirts and tails may lie beside the surface; control joints a little farther.

@@ -11,7 +11,7 @@
 
 namespace limber {
 
-// What stands in a command for the file of an entry, and for what is to be written of it.
+// Placeholders in a command for the input file of an entry, and for its output.
 inline constexpr std::string_view kBatchInput = "{input}", kBatchOutput = "{output}";
 // In a batch's folder of outputs: all that is no output.
 inline constexpr std::string_view kBatchOwnFolder = ".limber-batch";
@@ -44,7 +44,7 @@ BatchShard parseBatchShard(std::string_view text);
 // ("a_obj.glb", "a_stl.glb"). What folders and patterns find below `outputs`, the batch's folder of outputs, is left
 // out: the same plan has the same entries once it has run.
 //
-// `commands` are those that a batch may run. Throws Error kBadData at the place of what is wrong, also where an output
+// `commands` are those that a batch may run. Throws Error kBadData that names the wrong entry, also where an output
 // would have to be a file and the folder of another, or would lie in the batch's own folder; kFile where an input is
 // not there (of lists, only the list is looked for). Cost: O(n log n) in the number of entries; no input is opened.
 BatchPlan readBatchPlan(const std::filesystem::path& file, std::span<const std::string_view> commands,

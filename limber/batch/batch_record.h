@@ -42,7 +42,7 @@ std::map<std::string, BatchRecord> readBatchRecords(const std::filesystem::path&
 // process of this system.
 class BatchRecordFile {
  public:
-  // Makes the file, or takes away what stands behind its last line. While another one has it open, `waiting` is called
+  // Makes the file, or cuts it after its last whole line. While another one has it open, `waiting` is called
   // ten times a second; it may throw to give up. Throws Error kFile: it cannot be written or locked (flock).
   BatchRecordFile(const std::filesystem::path& file, const std::function<void()>& waiting);
   BatchRecordFile(const BatchRecordFile&) = delete;

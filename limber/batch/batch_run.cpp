@@ -153,7 +153,7 @@ class BatchRun {
     }
   }
 
-  // Why no file can be put there; empty where nothing is in the way.
+  // Why no file can be put there; empty where there is no obstacle.
   static std::string obstacleAt(const fs::path& location) {
     std::error_code problem;
     const fs::file_status found = fs::symlink_status(location, problem);
@@ -161,7 +161,7 @@ class BatchRun {
     return problem == std::errc::not_a_directory ? "a file lies where the output's folder is to be" : "";
   }
 
-  // Digests of the entry's files; what is wrong with these or with its output's place, empty where nothing is.
+  // Computes digests of the entry's files. Returns what is wrong with these or with its output's path, else empty.
   std::string identify(const BatchEntry& entry, BatchRecord& record) {
     const fs::path input = plan_.folder / entry.input;
     const BatchTask task = tasks_.of(entry);
@@ -313,7 +313,7 @@ class BatchRun {
     fs::remove(open.warnings(), unseen);
   }
 
-  // What is in the way of taking what was made; empty where nothing is.
+  // Why the output cannot be accepted; empty where it can.
   static std::string problemWithOutput(const Open& open) {
     const fs::path made = open.made();
     std::error_code unseen;

@@ -66,10 +66,10 @@ struct BatchOptions {
 //
 // A command's temporary files (TMPDIR) lie in the batch's own folder and go with the entry, however that ends.
 //
-// An entry's output is written aside, hashed and renamed to its place; then its line is appended to the shard's
-// records. So whatever ends a batch, an output is whole or not there, and the next run does what has no line. An entry
-// with a line of the same key is left alone while its output has the bytes that the line tells; an entry that ran out
-// of time or memory is done again where there is more of it, one that crashed always.
+// An entry's output is written to a temporary path, hashed and renamed to its own; then its line is appended to the
+// shard's records. So whatever ends a batch, an output is whole or not there, and the next run does the entries without
+// a line. An entry with a line of the same key is left alone while its output matches the digest in that line; an entry
+// that ran out of time or memory is done again where there is more of it, one that crashed always.
 //
 // A folder of an earlier plan is taken over: what is right in there stays. Throws Error kBadArgument where the folder
 // is a file, or holds other things and no batch; kFile where nothing can be written.

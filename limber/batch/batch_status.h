@@ -1,4 +1,4 @@
-// How a batch stands, from the records of all its shards.
+// The status of a batch, from the records of all its shards.
 #pragma once
 
 #include <cstddef>

@@ -48,7 +48,7 @@ class BatchTasks {
 struct PlannedOutputs {
   std::vector<std::string> outputs;           // in the order of the plan
   std::string task;                           // the digest of most; empty in a folder of an earlier version
-  std::map<std::size_t, std::string> others;  // those of entries that differ, by their place in the order
+  std::map<std::size_t, std::string> others;  // those of entries that differ, by their index in the order
 
   const std::string& taskOf(std::size_t index) const;
 };

@@ -10,8 +10,8 @@
 
 namespace limber {
 
-// Immutable, cheap to copy (copies share all readings), safe across threads. What a reading throws is thrown whenever
-// it is asked for.
+// Immutable, cheap to copy (copies refer to the same readings), thread-safe. An error of a reading is thrown every time
+// it is requested.
 class Character {
  public:
   explicit Character(std::shared_ptr<const Asset> document);

@@ -11,7 +11,7 @@ namespace limber {
 
 namespace {
 
-// Over all ways to pair.
+// The minimum over all pairings.
 double minSum(const std::vector<std::vector<double>>& costs) {
   const std::size_t rows = costs.size(), columns = costs[0].size();
   std::vector<std::size_t> order(std::max(rows, columns));

@@ -17,7 +17,7 @@ class DisjointSets {
     std::iota(parent_.begin(), parent_.end(), Index{0});
   }
 
-  // The name of the element's set. Halves the way there.
+  // The name of the element's set, found with path halving.
   Index find(Index i) {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
     return i;

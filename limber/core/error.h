@@ -48,7 +48,7 @@ class Error : public std::exception {
 struct Warning {
   std::string kind;     // stable and short: "degenerate-triangles"
   std::string message;  // "degenerate triangles left out"
-  std::string where;    // the first place it was met, may be empty
+  std::string where;    // where it was first met, may be empty
   std::size_t count = 0;
 };
 
@@ -57,7 +57,7 @@ std::string warningText(const Warning& warning);
 
 class Warnings {
  public:
-  // Adds `count` to the warning of that kind; message and place are those of the first call.
+  // Adds `count` to the warning of that kind; `message` and `where` are those of the first call.
   void add(std::string_view kind, std::string_view message, std::string_view where = {}, std::size_t count = 1);
   void append(const Warnings& other);
   const std::vector<Warning>& items() const { return items_; }

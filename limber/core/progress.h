@@ -64,7 +64,7 @@ class Progress {
   double openedAt_ = 0, stepOpenedAt_ = 0;
 };
 
-// Seconds of a steady clock. The one place that asks for the time.
+// Seconds of a steady clock. Nothing else reads the time.
 double secondsNow();
 
 }  // namespace limber

@@ -12,7 +12,7 @@ struct BodyBuild {
   double height = 1;
   double legs = 1, arms = 1, trunk = 1;  // along their bones; wings and fins go with arms, tails with the trunk
   double girth = 1;                      // across the bones of these
-  double head = 1;                       // all ways
+  double head = 1;                       // in all directions
 };
 
 // A build by its seed, the same on every machine. Deviations are chosen to look like a crowd of adults, not measured:

@@ -21,7 +21,7 @@ void removeClips(Asset& asset) {
   removeChannels(asset, [](Index, std::string_view) { return true; });
 }
 
-// Tracks of one value keep one key. A clip in which all stands then has no duration to be held by a second key.
+// Tracks of one value keep one key. So a clip without any motion has no duration, which only a second key could give.
 template <typename Value>
 void keepOneKeyOfStill(std::vector<Track<Value>>& tracks) {
   for (Track<Value>& track : tracks) {

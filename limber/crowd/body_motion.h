@@ -33,8 +33,8 @@ struct BodyMotion {
 BodyMotion moveBuild(const Asset& character, const BodyBuild& build, std::span<const Motion> motions,
                      const CrowdOptions& options, SkeletonMatches& matches);
 
-// Writes the clips into `moving`, repeated to `frames` and one cycle more: a key at each frame of what moves, one of
-// what stands.
+// Writes the clips into `moving`, repeated to `frames` and one cycle more: a key at each frame of tracks that change,
+// one key of constant tracks.
 void lengthenClips(BodyMotion& body, Index frames, double framesPerSecond);
 
 }  // namespace limber

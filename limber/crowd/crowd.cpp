@@ -44,7 +44,7 @@ void checkOptions(std::span<const Asset> characters, std::span<const Motion> mot
   if (motions.empty()) throw Error(ErrorCode::kBadArgument, "no motion is given");
 }
 
-// What the bodies share and no build changes: materials with their pictures.
+// The data common to all bodies and builds: materials with their textures.
 Asset withoutScene(const Asset& character) {
   Asset asset = character.clone();
   asset.warnings = {};
@@ -83,7 +83,7 @@ Asset sharedOf(std::span<const Asset> characters, const std::vector<bool>& isUse
   return asset;
 }
 
-// #nodes: meshes that their joints place, and nothing hangs on. They stand at the root of a scene, where glTF wants
+// #nodes: skinned meshes that are no joints and have no children. They go to the root of a scene, where glTF wants
 // them.
 std::vector<bool> placedByJoints(const gltf::Document& document) {
   std::vector<bool> placed;

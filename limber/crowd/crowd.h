@@ -1,4 +1,4 @@
-// Many bodies of differing builds in one document, each with its own clip, its own offset in time and its own place.
+// Many bodies of differing builds in one document, each with its own clip, time offset and position.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ struct CrowdOptions {
   Index builds = 8;               // differing ones; at least one of each character, at most one for each body
   Index offsets = 8;              // moments of its cycle at which a body may begin, evenly over it; at least 1
   double variety = 1;             // 0: as the characters are, to 1: as adults differ (randomBuild)
-  std::uint64_t seed = 1;         // of builds, clips, offsets, places
+  std::uint64_t seed = 1;         // of builds, clips, offsets, positions
   double framesPerSecond = 30;    // of the keys, above 0
   std::optional<double> spacing;  // metres from body to body; none: 1.25 times the widest of them
   double heading = 0;             // degrees by which a body may face aside of the others, to either side
@@ -44,10 +44,10 @@ struct Crowd {
 
 // The crowd. A body's clip begins at its offset and is repeated until the longest of all has gone round once; in the
 // last frame before it is repeated it goes over to its first frame, so clips should be loops (ClipEdits::loop), and
-// those that travel start anew from their place.
+// those that travel start anew from their position.
 //
-// Bodies stand in rows on the ground, y = 0: the first frame of each clip has the body's middle over its place there,
-// and what is lowest of it at rest is at the ground's height, wherever characters and motions have their origins.
+// Bodies are in rows on the ground, y = 0: the first frame of each clip has the body's middle over its position there,
+// and its lowest point in rest pose is at the ground's height, wherever characters and motions have their origins.
 //
 // Each character, build and clip comes once before one of them comes twice, in orders by chance. Where there are fewer
 // bodies than characters or clips, some have none: warnings "characters-left-out" and "clips-left-out".

@@ -28,7 +28,7 @@ Asset crowdMemberAlone(const Asset& asset, const CrowdMember& member);
 // Of one build in one clip.
 //
 // matrices  #frames x #joints x 12: for each joint of readSkeleton the first three rows of what takes a bound point to
-//           where it is posed, the member's place aside; row by row, metres
+//           where it is posed, without the member's placement; row by row, metres
 struct CrowdFrames {
   Index build = 0;
   std::string clip;

@@ -61,7 +61,7 @@ TEST(CrowdFrames, AMemberAloneHasOneBodysSurfaceAtTheOrigin) {
   }
 }
 
-// Each joint's place in its table, put where the member stands, is where the file's nodes and channels have it.
+// Each joint's position in its table, after the member's placement, is that of the file's nodes and channels.
 TEST(CrowdFrames, TablesHoldWhatTheFileShows) {
   const Asset& asset = crowd().asset;
   const std::vector<CrowdMember> members = crowdMembers(asset);

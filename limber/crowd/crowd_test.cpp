@@ -27,7 +27,7 @@ CrowdOptions fewBodies() {
   return options;
 }
 
-// World places of one body's joints at a moment of the file's animation.
+// World positions of one body's joints at a time of the file's animation.
 std::vector<Vec3> jointsAt(const Asset& asset, Index skin, double seconds) {
   return testing::nodesAt(asset, asset.document.skins[skin].joints, seconds);
 }
@@ -154,7 +154,7 @@ TEST(Crowd, OfFewerBodiesSaysWhatIsLeftOut) {
   EXPECT_TRUE(warnings[1].message.ends_with(all.clips[2])) << warnings[1].message;
 }
 
-// All of it stands elsewhere in its file.
+// The dragon with its whole scene displaced.
 Asset movedDragon(const Vec3& by) {
   Asset asset = dragon();
   gltf::Document& document = asset.document;

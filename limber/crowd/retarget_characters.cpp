@@ -52,7 +52,7 @@ class Tally {
   std::map<std::string, Report> reported_;
 };
 
-// The message without the place, by which failures of one kind are told together.
+// The message without where(), by which failures of one kind are reported together.
 std::string problemOf(const Error& error) {
   return error.remedy().empty() ? error.message() : fmt::format("{} ({})", error.message(), error.remedy());
 }

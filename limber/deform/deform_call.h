@@ -1,4 +1,4 @@
-// What the deformers share between their public functions and the inner loops.
+// Common to the public functions and the inner loops of the deformers.
 #pragma once
 
 #include "limber/deform/deform_kernels.h"

@@ -1,5 +1,6 @@
-// The inner loops of the deformers, built once for every machine and again for those with AVX2 and AVX-512; the same
-// bits come out of all. What is here is plain numbers on purpose: one build must share no inline function with another.
+// The inner loops of the deformers, built once for every machine and again for those with AVX2 and AVX-512; all builds
+// give the same bits. Everything here is plain numbers on purpose: two builds must not have an inline function in
+// common.
 #pragma once
 
 #include <cstddef>
@@ -29,8 +30,8 @@ struct DeformJob {
   const float* motions = nullptr;    // #J * kFloatsPerMotion
   const float* rotationCenters = nullptr;  // as positions
 
-  // Direct delta mush: of each vertex its row, of each row its entries (of four joints each; in full of
-  // one), and the smoothed place.
+  // Direct delta mush: the row of each vertex, the entries of each row (of four joints each; in full of one), and the
+  // smoothed position.
   const std::uint32_t* rowOf = nullptr;      // #V
   const std::uint32_t* rowBegin = nullptr;   // #R + 1
   const std::uint32_t* rowJoints = nullptr;  // #E * 4; in full #E

@@ -259,8 +259,9 @@ LIMBER_INLINE Lanes3 growthOf(const Columns stretches[4], const Lanes3& arm) {
   return xyzOf(transposed(growths[0], growths[1], growths[2], growths[3]));
 }
 
-// v' = M c + R S (v - c) about the vertex' centre c: the blended matrix M takes the centre, the blended rotation R and
-// stretch S what stands out from it. Again as displacements, so that nothing moves where all are the identity.
+// v' = M c + R S (v - c) about the vertex's centre c: the blended matrix M moves the centre, the blended rotation R and
+// stretch S the displacement from it. Again computed as displacements, so that nothing moves where all are the
+// identity.
 template <int kSlots, bool kNormals, bool kScales>
 LIMBER_INLINE void centeredBlock(const DeformJob& job, std::size_t v) {
   const Lanes3 positions = loadLanes3(job.positions + 3 * v);
@@ -354,7 +355,7 @@ LIMBER_INLINE RowSum sumRow(const DeformJob& job, std::size_t row) {
   return sum;
 }
 
-// v' = p + shift + R S (v - p) about the vertex' smoothed place p.
+// v' = p + shift + R S (v - p) about the vertex's smoothed position p.
 template <bool kNormals, bool kScales>
 LIMBER_INLINE void directBlock(const DeformJob& job, std::size_t v) {
   RowSum sums[4];
@@ -489,7 +490,7 @@ LIMBER_INLINE AppliedMotions fitRotations(const DeformJob& job, std::size_t v, c
   return rotationsOf(q);
 }
 
-// v' = p + offset + R S (v - p) about the vertex' smoothed place p.
+// v' = p + offset + R S (v - p) about the vertex's smoothed position p.
 template <bool kNormals, bool kScales>
 LIMBER_INLINE void fullDirectBlock(const DeformJob& job, std::size_t v) {
   const MomentSums sums = sumMoments<kScales>(job, v);

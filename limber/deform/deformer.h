@@ -1,4 +1,4 @@
-// What every way of moving a bound mesh with its joints is. One table lists them by name.
+// The interface of every method that moves a bound mesh with its joints. One table lists them by name.
 #pragma once
 
 #include <cstddef>

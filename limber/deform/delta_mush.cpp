@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kSmoothGrain = 4096, kDetailGrain = 512;  // vertices; some 50 microseconds each
 constexpr std::size_t kFloatsPerMushVertex = 3 + 3 + 4;         // displacements before and after, rotation
 
-// What stages of one call share.
+// State common to the stages of one call.
 struct MushFrame {
   const DeltaMushSurface& surface;
   const DeformInput& input;

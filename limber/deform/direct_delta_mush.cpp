@@ -18,7 +18,7 @@ namespace {
 // Of the surroundings' mean squared distance, as if they had it in every direction; with it R of a flat or straight
 // surface is known. Small against what a bend does to it.
 constexpr double kRoundness = 1e-3;
-// The same where all surroundings lie at one place, in squared longest sides.
+// The same where all surroundings lie at one position, in squared longest sides.
 constexpr double kMinRoundness = 1e-12;
 
 // Moments of weighted points up to the second order.
@@ -134,7 +134,8 @@ class MomentTable {
     }
   }
 
-  // Moments of the smoothed weights about each vertex' smoothed place; by the paper's Psi and w' (equations 15 and 18).
+  // Moments of the smoothed weights about each vertex's smoothed position; the paper's Psi and w' (equations 15 and
+  // 18).
   std::vector<PointMoments> momentsOf(const std::vector<VertexWeight>& weights) const {
     // About their middle, so that little is lost by taking differences.
     Vec3 middle = Vec3::Zero();

@@ -236,7 +236,7 @@ TEST(DirectDeltaMush, EveryBuildOfTheInnerLoopGivesTheSameBits) {
   }
 }
 
-// A tube of 21 joints one behind the other, each point held by the three nearest.
+// A tube along a chain of 21 joints, each point bound to the three nearest.
 BoundMesh manyJointedTube() {
   BoundMesh bound;
   bound.mesh = testing::tube(8, 41, true);

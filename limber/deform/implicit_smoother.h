@@ -17,7 +17,7 @@ class ImplicitSmoother {
   // Factors once. Keeps the surface, which must outlive it.
   ImplicitSmoother(const SmoothingSurface& surface, double lambda, int times);
 
-  // x: #S rows of kColumns, that of a vertex at place(vertex); the first `columns` are smoothed.
+  // x: #S rows of kColumns; that of a vertex begins at rowOf(vertex). The first `columns` are smoothed.
   void smooth(std::vector<double>& x, int columns) const;
   std::size_t rowOf(Index vertex) const { return std::size_t{kColumns} * cholesky_.rowOf(vertex); }
 

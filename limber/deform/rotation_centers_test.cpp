@@ -22,7 +22,7 @@ struct Tube {
   SkinWeights weights;
 };
 
-// Radius 0.3 round x from -2 to 2. Three joints, at x = -2, 0 and 1, share it in smooth ramps.
+// Radius 0.3 round x from -2 to 2. The weights of three joints, at x = -2, 0 and 1, blend in smooth ramps.
 Tube tube() {
   Tube result;
   result.weights.slots = 3;

@@ -11,7 +11,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kAlike = 0.5;  // of the weights, for vertices at one place to be one
+constexpr double kAlike = 0.5;  // of the weights, for vertices at one position to be one
 
 // What two vertices' bindings have in common, 0 to 1; what is missing to a sum of 1 counts as bound to the rest pose.
 double commonWeight(const SkinWeights& weights, Index a, Index b) {
@@ -28,7 +28,7 @@ double commonWeight(const SkinWeights& weights, Index a, Index b) {
   return common + std::max(0.0, std::min(1 - sumA, 1 - sumB));
 }
 
-// Welds by binding what `place` has at one place; returns the first vertex of each welded one.
+// Welds vertices that have the same number in `indices` and similar weights; returns the first of each welded vertex.
 std::vector<Index> weldAlike(const std::vector<Index>& indices, const SkinWeights& weights,
                              std::vector<Index>& welded) {
   std::vector<Index> representatives, next, head(indices.size(), kNoIndex);

@@ -9,8 +9,8 @@
 
 namespace limber {
 
-// Vertices at one place that are bound at least by half alike are one, so that a seam stays closed; parts that only
-// touch stay apart. Its weights are those of the first of them.
+// Vertices at one position whose weights agree at least by half are one, so that a seam stays closed; parts that only
+// touch stay apart. A welded vertex has the weights of its first one.
 //
 // stiffness, diagonal  of the robust Laplacian (limber/geometry/solve/laplacian.h): smoothing is a random walk from a
 // vertex to

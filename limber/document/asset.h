@@ -1,4 +1,4 @@
-// What a file held, kept whole: the home of everything that limber does not touch.
+// A file's content, kept whole, including everything that limber does not touch.
 #pragma once
 
 #include <string>
@@ -12,9 +12,9 @@ namespace limber {
 
 // A glTF document with the bytes it refers to. Other formats become one on reading.
 //
-// What limber adds goes behind what is there. Every buffer's bytes are held in memory; buffers that came out of a GLB's
-// binary chunk, a data URI or a file beside are alike here, `uri` says which. Images beside the file are read too, so
-// that a written copy is complete.
+// What limber adds goes after what is there. Every buffer's bytes are in memory; buffers read from a GLB's binary
+// chunk, a data URI or a side file are treated alike, and `uri` records which it was. Images beside the file are read
+// too, so that a written copy is complete.
 //
 // Moves cheaply; copying is explicit through clone().
 struct Asset {

@@ -31,7 +31,7 @@ bool isPlacedByJoints(const gltf::Node& node) {
   return node.skin && node.children.empty();
 }
 
-// Wherever it stands in there.
+// Erases the extension from all objects within `value`.
 void eraseExtensionWithin(Json& value, const std::string& name) {
   if (!value.is_structured()) return;
   if (value.is_object() && value.contains("extensions") && value["extensions"].is_object()) {

@@ -1,4 +1,4 @@
-// Several documents in one, each in a place of its own.
+// Merges several documents into one, each with a transform of its own.
 #pragma once
 
 #include <optional>
@@ -23,11 +23,11 @@ struct AssetPart {
   std::optional<Carrier> carrier;  // none: the scene
 };
 
-// A document with one scene that shows the default scene of each part below a node of its own; other scenes go. Skinned
-// meshes without children stay at the scene's root, where glTF wants them: their joints place them. Names of nodes and
-// of animations are made unique (walk, walk_2). Lists and buffers are one behind the other, so that all numbers of the
-// first part stay as they are. What an extension says of a whole document, and lights and variants are not that, is
-// left out with warning "scene-extensions": there is no telling how two of them go together.
+// A document with one scene that shows the default scene of each part below a node of its own; other scenes are
+// removed. Skinned meshes without children stay at the scene's root, as glTF recommends: their joints position them.
+// Names of nodes and of animations are made unique (walk, walk_2). Lists and buffers are concatenated, so that all
+// numbers of the first part stay as they are. What an extension says of a whole document, except lights and variants,
+// is left out with warning "scene-extensions": how to merge two of them is unknown.
 //
 // Carriers must not go in a circle. Cost: linear in the documents' size.
 Asset mergeAssets(std::vector<AssetPart> parts);

@@ -21,12 +21,12 @@ Resolver folderResolver(const std::filesystem::path& folder);
 // result has passed checkAsset.
 Asset readAsset(const std::filesystem::path& path);
 
-// The same from memory. `name` gives the extension and stands in messages. A buffer that cannot be opened is an Error,
+// The same from memory. `name` gives the extension and appears in messages. A buffer that cannot be opened is an Error,
 // an image is a warning "missing-images" and stays a reference. An FBX file may come in an archive that does not
-// compress (stored_archive.h), together with its pictures, under the model's name. Compressed geometry comes out plain,
-// with a warning "decompressed"; weights that are none come out as 0 (weight_repair.h). A motion (BVH, or arrays in
-// SMPL's form) becomes nodes with a clip (motionAsset), read without options. Time and memory are bounded by the sizes
-// of the file and of what it refers to.
+// compress (stored_archive.h), together with its pictures, under the model's name. Compressed geometry is decompressed,
+// with a warning "decompressed"; invalid weights become 0 (weight_repair.h). A motion (BVH, or arrays in SMPL's form)
+// becomes nodes with a clip (motionAsset), read without options. Time and memory are bounded by the sizes of the file
+// and of what it refers to.
 Asset readAsset(ByteSpan bytes, std::string_view name, const Resolver& resolver = {});
 
 // An OBJ file as readAsset reads it, but vertices that it numbers differently stay apart, and the last COLOR_n of each

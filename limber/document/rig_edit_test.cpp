@@ -19,7 +19,7 @@ using testing::SceneBuilder;
 using testing::translation;
 
 // A character as Blender writes it: an armature with a transform, hips with a chest and an end site, a skinned body
-// beside them, a hat that hangs on the chest, a camera on the hips, clips of the chest and of a lamp that stands by.
+// beside them, a hat attached to the chest, a camera on the hips, clips of the chest and of a separate lamp.
 struct EditedCharacter {
   SceneBuilder scene;
   Index bodyMesh, hatMesh, end, hat, chest, camera, hip, body, armature, lamp, skin;
@@ -329,7 +329,7 @@ TEST(ReplaceWeights, ASkinIsGivenTheJointsThatItLacks) {
   const std::vector<float> binds = readFloats(asset, *skin.inverseBindMatrices);
   ASSERT_EQ(binds.size(), 32u);
   EXPECT_TRUE(std::equal(oldBinds.begin(), oldBinds.end(), binds.begin()));
-  EXPECT_EQ(binds[16 + 13], 0);  // the root stands in the origin
+  EXPECT_EQ(binds[16 + 13], 0);  // the root is at the origin
   expectSamePositions(geometry, collectGeometry(asset));
 }
 

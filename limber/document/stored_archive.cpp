@@ -17,9 +17,9 @@ namespace {
 // Signatures and sizes in bytes of the records that APPNOTE.TXT 6.3 (PKWARE) lays down.
 constexpr std::uint32_t kLocalFile = 0x04034b50, kDirectoryEntry = 0x02014b50, kDirectoryEnd = 0x06054b50;
 constexpr std::size_t kLocalSize = 30, kEntrySize = 46, kEndSize = 22, kMaxComment = 65535;
-constexpr std::uint32_t kStored = 0, kDeflated = 8;    // ways of packing
+constexpr std::uint32_t kStored = 0, kDeflated = 8;    // compression methods
 constexpr std::uint64_t kMaxUnpacked = 2'000'000'000;  // of files together
-constexpr std::uint32_t kInZip64 = 0xffffffff;         // in place of a number that stands elsewhere
+constexpr std::uint32_t kInZip64 = 0xffffffff;         // marks a number that is stored elsewhere
 
 // CRC-32, the polynomial reversed, a byte at a time by a table.
 class Checksum {

@@ -25,7 +25,7 @@ class ZipArchive {
   ZipArchive(ByteSpan bytes, std::string_view name);
 
   // None where there is no such file. Throws Error kBadData where it is cut off or damaged; kUnsupported where it is
-  // encrypted or compressed in another way than by deflate, or the archive is a ZIP64; kLimit beyond maxUnpacked().
+  // encrypted or compressed by another method than deflate, or the archive is a ZIP64; kLimit beyond maxUnpacked().
   std::optional<Bytes> find(const std::string& path) const;
 
   // All files whose paths `isAskedFor` takes; an empty function takes all. Throws as find does, kLimit where they have

@@ -31,7 +31,7 @@ Quat uprightTurn(UpAxis up);
 // "y", "-z": as the option --up has it.
 std::string_view nameOf(UpAxis up);
 std::optional<UpAxis> upAxisNamed(std::string_view name);
-// The one that points the other way.
+// The opposite direction.
 UpAxis opposite(UpAxis up);
 
 }  // namespace limber

@@ -51,7 +51,7 @@ int hexDigit(char c) {
   return -1;
 }
 
-// A '%' that no two hexadecimal digits follow stands for itself: exporters write plain file names too.
+// A '%' that no two hexadecimal digits follow is kept as it is: exporters write plain file names too.
 std::string percentDecode(std::string_view text) {
   std::string result;
   result.reserve(text.size());

@@ -26,7 +26,7 @@ std::string localPath(std::string_view uri);
 // The same for a path that is none of a URI: nothing in it is decoded. Throws Error kBadData likewise.
 void checkLocalPath(const std::string& path);
 
-// The other way: a relative path as a URI reference.
+// The inverse: a relative path as a URI reference.
 std::string percentEncode(std::string_view path);
 
 }  // namespace limber

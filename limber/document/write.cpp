@@ -106,7 +106,7 @@ void writeGltf(const Asset& asset, const fs::path& path, std::vector<OutputFile>
     outputs.push_back({path.parent_path() / file.path, file.bytes});
     if (file.path.has_parent_path()) folders.make(outputs.back().path.parent_path());
   }
-  outputs.push_back({path, asBytes(files.json)});  // last, so that it never stands there without what it refers to
+  outputs.push_back({path, asBytes(files.json)});  // last, so that it never exists without what it refers to
   writeFiles(outputs);
   folders.keep();
 }

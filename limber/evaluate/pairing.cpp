@@ -65,7 +65,7 @@ class PointGrid {
       key = (key ^ static_cast<std::uint64_t>(cell)) * 0x9E3779B97F4A7C15u;
       key ^= key >> 29;
     }
-    return key;  // cells that share a key only share a list: distances are checked
+    return key;  // cells of one key merely have one list: distances are checked
   }
 
   const TriMesh& mesh_;

@@ -20,8 +20,8 @@ struct JobLimits {
 
 struct Job {
   std::vector<std::string> command;  // the program's path, then its arguments; no shell reads them
-  // Where there is one, run in place of `command`, in a child of this process: what is loaded and made here it finds
-  // ready. Returns the exit code. This process must have no other threads then, or none that hold a lock.
+  // If set, this runs instead of `command`, in a child of this process, where everything loaded and made here is ready.
+  // Returns the exit code. This process must then have no other threads, or none that hold a lock.
   std::function<int()> work;
   std::filesystem::path folder;  // that it works in
   JobLimits limits;

@@ -21,13 +21,14 @@ using ChainDone = std::function<void(std::size_t chain, const std::vector<JobRes
 // run are looked after before it is asked again.
 using NextChain = std::function<std::optional<JobChain>()>;
 
-// Runs the chains, `atOnce` (1 or more) side by side and begun in order. In this thread are called: `next` as there is
-// room for a chain, `done` as one ends, `meanwhile` some fifty times a second. What they throw leaves, and whatever
-// leaves ends all processes that still run. Only chains that run are held.
+// Runs the chains, up to `atOnce` (1 or more) in parallel, started in order. This thread calls `next` when there is
+// room for a chain, `done` when one ends, and `meanwhile` some fifty times a second. Exceptions from these calls
+// propagate, and any exception that leaves this function ends all processes that still run. Only running chains are
+// kept in memory.
 void runJobs(const NextChain& next, int atOnce, const std::function<void()>& meanwhile, const ChainDone& done);
 
-// The same for chains that are all there; progress is their share that has ended. Throws Error kCancelled as Progress
-// does.
+// The same for chains that are all known in advance; the progress is the fraction of them that has ended. Throws Error
+// kCancelled as Progress does.
 void runJobs(std::span<const JobChain> chains, int atOnce, Progress& progress, const ChainDone& done);
 
 }  // namespace limber

@@ -74,7 +74,7 @@ TEST(JobPool, RunsWorkInAChild) {
   EXPECT_EQ(here, 0);
 }
 
-// A file's lock that a child still held would outlive the program that was ended.
+// If a child kept a file's lock, it would outlive the program that was ended.
 TEST(JobPool, WorkHasNoneOfTheProgramsFiles) {
   const testing::TemporaryFolder folder;
   const int file = open((folder.path() / "lock").c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0600);

@@ -12,9 +12,9 @@ namespace limber {
 // where a program of one has a group of its own, that one's guard sees it end. A process that leaves its group (setsid)
 // escapes.
 //
-// In place of Linux's PR_SET_PDEATHSIG, which reaches children alone, not theirs, and ends with the thread that
-// started them in place of the program; of signal handlers, which SIGKILL passes by; and of Linux's subreapers, which
-// macOS has not. The guard is a shell (1 MB, about a millisecond), so that it inherits none of this program's pages.
+// The alternatives fall short: Linux's PR_SET_PDEATHSIG reaches children alone, not theirs, and fires when the thread
+// that started them ends rather than the program; signal handlers do not see SIGKILL; and macOS lacks Linux's
+// subreapers. The guard is a shell (1 MB, about a millisecond), so that it inherits none of this program's pages.
 class ProcessGroup {
  public:
   // Throws Error kFile where the system gives no pipe or no process.

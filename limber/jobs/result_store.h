@@ -8,9 +8,9 @@
 
 namespace limber {
 
-// One text for each key. A text is there as a whole or not at all: it is written beside its place and renamed. What an
-// earlier run left half written is taken away at the start. One store at a time may be open in a folder, in any
-// process.
+// One text for each key. A text is there as a whole or not at all: it is written to a temporary file beside its final
+// path and renamed. What an earlier run left half written is removed at the start. Only one store at a time may be open
+// in a folder, in any process.
 class ResultStore {
  public:
   // Makes the folder where it is missing. Throws Error kFile: it cannot be made, or another program has it open.

@@ -68,7 +68,8 @@ void closeInherited() {
   for (int file = STDERR_FILENO + 1; file < most; ++file) close(file);
 }
 
-// In place of exec. None of this process's files are written, flushed or removed by the child's end.
+// Runs the job's function instead of calling exec. The end of the child writes, flushes or removes none of this
+// process's files.
 [[noreturn]] void doWork(const ChildStart& start) {
   closeInherited();
   std::signal(SIGINT, SIG_DFL);

@@ -22,7 +22,7 @@ TEST(CornerNormals, ACubeKeepsItsSharpEdges) {
   }
 }
 
-// A cylinder whose triangles share no vertex index: equal positions count as one vertex.
+// A cylinder whose triangles have no vertex index in common: equal positions count as one vertex.
 TEST(CornerNormals, ARoundWallIsSmoothEvenUnwelded) {
   std::vector<Vec3f> positions;
   std::vector<Triangle> triangles;

@@ -12,7 +12,7 @@
 namespace limber {
 
 inline constexpr int kTileSize = 32;        // pixels
-inline constexpr int kSamplesPerPixel = 8;  // places in a pixel, one in each of eight rows and columns
+inline constexpr int kSamplesPerPixel = 8;  // positions in a pixel, one in each of eight rows and columns
 
 // Offsets of the samples inside their pixel, in 1/16 pixel.
 inline constexpr std::array<std::array<int, 2>, kSamplesPerPixel> kSampleOffsets = {
@@ -54,7 +54,7 @@ struct TileSamples {
   void clear();
 };
 
-// Whether there is anything of a triangle at one of a pixel's samples, which stands at (x, y) in 1/256 pixel.
+// Whether there is anything of a triangle at one of a pixel's samples, whose position is (x, y) in 1/256 pixel.
 using SampleCover = std::function<bool(Index triangle, std::int32_t x, std::int32_t y, std::size_t sample)>;
 
 // Draws the mesh's triangles of that tile. The nearest wins, the lower number where two are equally near.

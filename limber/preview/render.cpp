@@ -221,7 +221,7 @@ void Painter::paintTile(int column, int row, TileSamples& model, TileSamples& ov
   }
 }
 
-// The texture's colour at a place in a triangle; white where it has none. One level serves the whole triangle: that in
+// The texture's colour at a point of a triangle; white where it has none. One level serves the whole triangle: that in
 // which a pixel of the picture has about two in each direction, of which the samples in it see most.
 Vec3 textureColor(const Surface& surface, Index number, const Vec3& weights) {
   const Scene& scene = *surface.materials;
@@ -257,7 +257,7 @@ Fragment Painter::attributesAt(const Surface& surface, Index number, std::int32_
   const Vec3 a = surface.positions[triangle[0]].cast<double>();
   const Vec3 face =
       (surface.positions[triangle[1]].cast<double>() - a).cross(surface.positions[triangle[2]].cast<double>() - a);
-  // The side that is seen counts, whichever way the file winds its triangles.
+  // The visible side counts, whatever the winding of the file's triangles.
   if (face.dot(camera_.eye - fragment.position) < 0) fragment.normal = -fragment.normal;
   return fragment;
 }
@@ -326,7 +326,7 @@ double Painter::groundShadow(double x, double y) const {
 Cover Painter::background(double x, double y) const {
   Cover cover = backdropAt(x, y, options_);
   double shadow = groundShadow(x, y);
-  // What is transparent is laid over other pictures in sRGB, where the same darkness is another share.
+  // A transparent picture is laid over others in sRGB, where the same darkness is another fraction.
   if (cover.opacity == 0) shadow = 1 - srgbByte(1 - shadow) / 255.0;
   cover.putOver(Vec3::Zero(), shadow);
   return cover;

@@ -102,7 +102,7 @@ void blurRows(const std::vector<float>& from, std::vector<float>& to, int reach)
       for (int k = -reach; k <= reach; ++k) {
         sum += from[std::size_t(y * kGroundSize + std::clamp(x + k, 0, kGroundSize - 1))];
       }
-      to[std::size_t(x * kGroundSize + y)] = sum / float(2 * reach + 1);  // transposed, so that twice is both ways
+      to[std::size_t(x * kGroundSize + y)] = sum / float(2 * reach + 1);  // transposed: two passes blur both axes
     }
   }
 }
@@ -211,7 +211,7 @@ void StudioLight::bakeGround() {
       }
     }
   });
-  // Two box blurs each way: the lamps' separate directions melt into one soft shadow.
+  // Two box blurs along each axis: the lamps' separate directions melt into one soft shadow.
   std::vector<float> other(ground_.size());
   for (int pass = 0; pass < 2; ++pass) {
     blurRows(ground_, other, 2);

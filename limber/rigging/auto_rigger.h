@@ -15,7 +15,7 @@
 
 namespace limber {
 
-// A joint whose place is given.
+// A joint whose position is given.
 struct JointPin {
   std::string joint;
   Vec3 position = Vec3::Zero();  // in the space of the mesh
@@ -42,7 +42,7 @@ struct RigOptions {
   // For riggers that fit a named skeleton.
   std::string templateName = "auto";              // auto: the one that fits best
   bool mayAbstain = true;                         // auto: handles where none is likely (kLikelyTemplate)
-  std::optional<Skeleton> templateSkeleton = {};  // a user's own, in place of that
+  std::optional<Skeleton> templateSkeleton = {};  // a user's own, instead of that
   std::optional<Vec3> up = {}, front = {};        // along an axis of the mesh's space; none: found
   std::vector<JointPin> pins = {};
 };
@@ -70,10 +70,10 @@ struct HandleSuggestion {
 
 struct AutoRig {
   Skeleton skeleton;         // in the space of the mesh
-  bool isAbstained = false;  // it has handles in place of a template (RigOptions::mayAbstain)
+  bool isAbstained = false;  // it has handles instead of a template (RigOptions::mayAbstain)
   std::vector<HandleSuggestion> suggestions;
   std::vector<TemplateMatch> matches;  // likeliest first: the one that was fitted, unless it abstained
-  // Joints at the ends of limbs whose pins would settle most of an unsure template, first things first, kMostDoubts at
+  // Joints at the ends of limbs whose pins would settle most of an unsure template, first things first, kMaxDoubts at
   // most; none where it is sure, has handles, or is a user's own skeleton of a person.
   std::vector<std::string> doubts;
   std::optional<Vec3> up;  // of the model as it was fitted

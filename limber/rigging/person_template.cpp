@@ -17,7 +17,7 @@ constexpr std::array<std::string_view, 9> kNeeded = {"hips",          "leftUpper
                                                      "rightUpperLeg", "leftLowerLeg",  "rightLowerLeg"};
 
 constexpr double kTrunk = 0.28;                // of the humanoid, from its legs' upper joints to its arms'
-constexpr double kBeyondFingers = 1.15;        // ends of fingers, in ways from the hand to their last joint
+constexpr double kBeyondFingers = 1.15;        // ends of fingers, in distances from the hand to their last joint
 constexpr double kAlike = 0.7, kSquare = 0.5;  // cosines between arms and legs, trunk and legs
 
 const TemplateSkeleton& humanoid() {

@@ -1,4 +1,4 @@
-// A user's skeleton that is a person's by its joints' names: the humanoid template finds its places.
+// A user's skeleton that is a person's by its joints' names: the humanoid template finds the positions of its joints.
 #pragma once
 
 #include <optional>
@@ -10,21 +10,21 @@
 namespace limber {
 
 struct PersonTemplate {
-  // The user's, in its rest pose, turned so that it stands as templates do: joints that play a bone of a person are
-  // placed, all others lie between. Tips of hands, feet and head stand last.
+  // The user's, in its rest pose, rotated into the orientation of templates: joints that correspond to a bone of a
+  // person are placed, all others lie between. Tips of hands, feet and head come last.
   TemplateSkeleton skeleton;
   std::vector<std::optional<Index>> humanoidJoint;  // #J, joints of the template "humanoid"
 };
 
 // own  templateFrom(skeleton)
-// None where the names do not tell the hips and the upper and lower arms and legs of both sides, nor for an animal that
-// stands on all of these.
+// None where the names do not identify the hips and the upper and lower arms and legs of both sides, nor for a
+// quadrupedal animal.
 std::optional<PersonTemplate> personTemplate(const Skeleton& skeleton, const TemplateSkeleton& own);
 
-// Where the user's joints stand when those of the humanoid stand at `fitted` (body space, as the result): each joint
-// that plays a bone in that bone's place, others as they stand to these in the rest pose, turned and scaled with the
-// bone that they lie along; fingers go along with the forearm. Pinned joints (#J, the user's) stand where they are
-// pinned.
+// Positions of the user's joints when those of the humanoid are at `fitted` (body space, as the result): each joint
+// that corresponds to a bone is at that bone's position, the others are where they are relative to these in the rest
+// pose, rotated and scaled with the bone that they lie along; fingers follow the forearm. Pinned joints (#J, the
+// user's) are where they are pinned.
 std::vector<Vec3> placePerson(const PersonTemplate& person, const std::vector<Vec3>& fitted, const TemplatePins& pins);
 
 // Pins of the user's joints as pins of the humanoid's; pins of joints that it does not have are left out.

@@ -42,7 +42,7 @@ class ErrorCurve {
   bool isStep(Index count) const {
     return errors_[count - 1] > errors_[count] && errors_[count] > errors_[count + 1] && errors_[count] > floor_;
   }
-  // How much steeper the error falls on the way up to a count than from there on.
+  // How much steeper the error falls up to a count than from there on.
   double bend(Index count) const {
     const double here = at(count), before = at(count / kNeighborhood), after = at(count * kNeighborhood);
     return ((before - here) - (here - after)) / std::log(kNeighborhood);

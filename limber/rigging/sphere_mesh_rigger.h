@@ -6,10 +6,10 @@
 
 namespace limber {
 
-// Counts of handles worth choosing, best first: where the error (SphereMesh::errors) falls steeply on the way up and
+// Counts of handles worth choosing, best first: where the error (SphereMesh::errors) falls steeply up to the count and
 // slowly from there on, both in logarithms; counts near 20 before others. There is always at least one. Cost: O(1).
 std::vector<HandleSuggestion> suggestHandles(const SphereMesh& spheres);
-// The same of any errors for each count from 0 to suggestedFrom(), of a model that can have up to mostHandles.
+// The same of any errors for each count from 0 to suggestedFrom(), of a model that can have up to maxHandles.
 std::vector<HandleSuggestion> suggestHandles(std::vector<double> errors, Index maxHandles);
 Index suggestedFrom();
 

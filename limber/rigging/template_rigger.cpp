@@ -40,7 +40,7 @@ struct MeasuredModel {
 
 namespace {
 
-constexpr std::size_t kCoarseSpheres = 120;        // for a first look at every way to stand
+constexpr std::size_t kCoarseSpheres = 120;        // for a first look at every orientation
 constexpr std::size_t kFramesRefined = 2;          // after it, with all spheres
 constexpr std::size_t kVariantsRefined = 4;        // of each of these
 constexpr double kCostOfDoubt = 1.8;               // cost at which confidence is a half
@@ -51,7 +51,7 @@ constexpr double kVoteOfShape = 8;                 // times the odds of a templa
 constexpr double kSureShape = 0.9;        // confidence of a shape from which on templates of other plans are not tried
 constexpr double kLongLimb = 0.1;         // heights; fingers are shorter
 constexpr double kCostOfUnmatched = 100;  // above the cost of any limb that has one
-constexpr double kMaxAsymmetry = 0.15;    // more than the most symmetric way to stand, of those looked at
+constexpr double kMaxAsymmetry = 0.15;    // more than the most symmetric orientation, of those looked at
 
 // Each joint once, and where the model may be: the model's size beyond its box is another unit.
 void checkPins(const TriMesh& mesh, const std::vector<JointPin>& pins) {
@@ -90,7 +90,7 @@ TemplatePins pinsIn(const TemplateSkeleton& skeleton, const AnatomicalFrame& fra
 // A model as templates are tried on it.
 struct Model {
   const BodyVolume& body;
-  const std::vector<AnatomicalFrame>& frames;  // ways to stand, likeliest first
+  const std::vector<AnatomicalFrame>& frames;  // orientations, likeliest first
   const std::optional<Vec3> front;             // if it is known
 };
 
@@ -99,14 +99,14 @@ struct Embedded {
   TemplateEmbedder embedder;
 };
 
-// Looks at every way to stand with some of the spheres, and at the best ones with all.
+// Looks at every orientation with some of the spheres, and at the best ones with all.
 Embedded bestEmbedding(const TemplateSkeleton& skeleton, const Model& model, const std::vector<JointPin>& pins) {
   const BodyVolume& body = model.body;
   const std::vector<AnatomicalFrame>& frames = model.frames;
   double least = 1;
   for (const AnatomicalFrame& frame : frames) least = std::min(least, frame.asymmetry);
   const std::vector<TemplateVariant> standing = templateVariants(skeleton);
-  // For each way to stand the variants, best first.
+  // For each orientation the variants, best first.
   struct Look {
     AnatomicalFrame frame;
     double cost;
@@ -158,7 +158,7 @@ std::size_t missingLimbs(const TemplateFit& fit) {
       std::count_if(fit.limbs.begin(), fit.limbs.end(), [](const TemplateLimb& limb) { return !limb.hasMatch; }));
 }
 
-// By the cost, and by the share of limbs that have a place: half a body is soon no body.
+// From the cost and the fraction of limbs that have a match: it falls fast with each missing limb.
 double confidenceOf(const TemplateFit& fit) {
   const double placed = 1 - static_cast<double>(missingLimbs(fit)) / static_cast<double>(fit.limbs.size());
   return placed * placed * placed / (1 + std::pow(fit.cost / kCostOfDoubt, 3.0));
@@ -187,7 +187,8 @@ std::optional<TemplateFit> figureFit(const TemplateSkeleton& skeleton, const Mod
   return fitOfFigure(skeleton, *once.figure, positions, frame);
 }
 
-// The template as it stands; where that is in doubt, a person in whatever pose; where that is, too, the template bent.
+// The template in its neutral pose; at low confidence a person in any pose; at low confidence in that, the template
+// bent.
 TemplateFit bestFit(const TemplateSkeleton& skeleton, const Model& model, const std::vector<JointPin>& pins,
                     FigureOnce& once, Progress& progress, bool inPoses = true) {
   progress.step("fit " + skeleton.name);
@@ -342,8 +343,8 @@ void warn(const Hypothesis& hypothesis, AutoRig& rig) {
   }
 }
 
-// How ill a limb stands in the model: the mean cost of its joints. Of bodies laid along curves, which have no costs,
-// long limbs come before short ones.
+// How badly a limb fits the model: the mean cost of its joints. Of bodies laid along curves, which have no costs, long
+// limbs come before short ones.
 double doubtOf(const Hypothesis& hypothesis, const TemplateLimb& limb, double length) {
   if (hypothesis.byPlan) return length;
   double cost = 0;

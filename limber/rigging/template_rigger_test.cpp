@@ -169,7 +169,7 @@ TEST(TemplateRigger, KeepsPins) {
   }
 }
 
-// A user's skeleton: trunk and arms; the left collar as well as the right one stands `collar` to the left.
+// A user's skeleton: trunk and arms; the left collar as well as the right one is `collar` to the left.
 Skeleton ownSkeleton(double collar, bool crossed) {
   Skeleton skeleton;
   const auto add = [&](const std::string& name, std::optional<Index> parent, const Vec3& from) {
@@ -243,7 +243,7 @@ TEST(TemplateRigger, SaysWhichLimbsHalfABodyLacks) {
   EXPECT_LT(armless.matches[0].confidence, 0.4);
   EXPECT_EQ(whereOf(armless, "no-place"), "leftShoulder to leftHand, rightShoulder to rightHand");
 
-  // What has no place is asked for first, a pair once.
+  // Limbs without a match come first, a pair once.
   ASSERT_EQ(upper.doubts.size(), 3u);
   EXPECT_TRUE(upper.doubts[0] == "leftToes" || upper.doubts[0] == "rightToes") << upper.doubts[0];
   ASSERT_EQ(armless.doubts.size(), 3u);

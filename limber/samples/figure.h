@@ -1,4 +1,4 @@
-// The person that sample motions move, and how it stands at a moment.
+// The person that sample motions move, and its stance at a time.
 #pragma once
 
 #include <array>
@@ -21,8 +21,8 @@ struct FootPose {
   double outward = 0, pitch = 0, toes = 0;
 };
 
-// Radians: from hanging outwards (a quarter turn is a T-pose), then forward; the elbow's bend, and how far the bent
-// forearm is turned from forwards to upwards about an upper arm that is held out.
+// Radians: from hanging outwards (a right angle is a T-pose), then forward; the elbow's bend, and how far the bent
+// forearm is rotated from forwards to upwards about an outstretched upper arm.
 struct ArmPose {
   double raise = 0, swing = 0, elbow = 0, twist = 0;
 };
@@ -38,7 +38,7 @@ struct Stance {
 // 1.72 m tall, in T-pose, soles on y = 0, facing +Z; joints named as in VRM; all rest rotations are identities.
 Skeleton figureSkeleton();
 
-// From the ankle's joint, of a foot that stands flat: to the heel's end on the ground, and to the toes' joint.
+// From the ankle's joint of a flat foot: to the heel's end on the ground, and to the toes' joint.
 inline const Vec3 kToHeel(0, -0.09, -0.05), kToToes(0, -0.065, 0.12);
 inline constexpr double kAnkleHeight = 0.09;
 

@@ -65,7 +65,7 @@ Skeleton flyingSkeleton() {
   return skeleton;
 }
 
-// A swing about one axis: how the joint is held, and how far it goes to and fro with the wings; radians.
+// A swing about one axis: the joint's mean angle, and how far it goes to and fro with the wings; radians.
 struct Swing {
   const char* joint;
   Vec3 axis;             // of a side's joints the left one's

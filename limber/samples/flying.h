@@ -5,7 +5,7 @@
 
 namespace limber {
 
-// Bound as wingedCharacter() stands; one clip, "fly", of one beat of the wings, its last frame posed as the first.
+// Bound in the pose of wingedCharacter(); one clip, "fly", of one beat of the wings, its last frame posed as the first.
 Asset makeFlying();
 
 }  // namespace limber

@@ -28,7 +28,7 @@ struct EdgeSide {
 };
 
 std::vector<EdgeSide> sortedEdges(const std::vector<Triangle>& triangles) {
-  // By the lesser vertex in one pass, for few edges share it; those few by the other one.
+  // By the lesser vertex in one pass, for few edges have the same one; those few by the other one.
   std::vector<std::size_t> next;
   const auto ofEach = [&](const auto& act) {
     for (std::size_t t = 0; t < triangles.size(); ++t) {
@@ -371,7 +371,7 @@ void relax(HalfMesh& mesh, const Sculpture& sculpture, int rounds) {
         if (steepness < 1e-6) continue;
         move -= slope * (slope.dot(move) / steepness);
         p += move;
-        p -= slope * (sculpture.distance(p) / steepness);  // the slope has hardly changed over so short a way
+        p -= slope * (sculpture.distance(p) / steepness);  // the slope has hardly changed over so short a distance
         if (!seam) p.x() = std::max(p.x(), 1e-6);
       }
     });

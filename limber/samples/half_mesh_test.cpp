@@ -105,7 +105,7 @@ TEST(Paint, TheBorderIsSharp) {
   const Solid cap = ellipsoid({0, 0.6, 0}, {0.4, 0.4, 0.4});
   paint(half, s, cap, 3);
   EXPECT_EQ(eulerNumber(mirrorHalf(half, s)), 2);
-  // Vertices that both materials share lie on the border, all others on their own side of it.
+  // Vertices of both materials lie on the border, all others on their own side of it.
   std::vector<int> seen(half.positions.size(), 0);
   for (std::size_t t = 0; t < half.triangles.size(); ++t) {
     for (const Index v : half.triangles[t]) seen[v] |= half.materials[t] == 3 ? 1 : 2;

@@ -1,5 +1,5 @@
 // Walks on six and on eight legs, for skeletons of the templates insect and spider. Legs next to each other, and the
-// two of a pair, take turns: an insect always stands on three (the tripod gait), a spider on four (Wilson: Insect
+// two of a pair, alternate: an insect is always on three (the tripod gait), a spider on four (Wilson: Insect
 // walking, 1966; Spider locomotion on level ground: Biancardi and others, 2011).
 #include <cmath>
 #include <span>
@@ -17,7 +17,7 @@ namespace limber {
 namespace {
 
 constexpr double kSeconds = 0.6, kStride = 0.16;  // of a stride, metres
-constexpr double kDutyFactor = 0.6;               // the share that a leg is on the ground
+constexpr double kDutyFactor = 0.6;               // the fraction of a stride that a leg is on the ground
 constexpr double kLift = 0.06, kBob = 0.004;      // metres, of a foot in the air and of the body twice a stride
 constexpr double kTail = 0.04;                    // radians, of the tail to each side
 
@@ -35,7 +35,7 @@ LegPositions legAt(int pair, int pairs) {
   return {{0.06, 0.18, z}, {0.2, 0.3, z + 0.3 * fan}, {0.36, 0.14, z + 0.8 * fan}, {0.42, 0.01, z + fan}};
 }
 
-// What is left of the way that a standing foot has gone back when it swings ahead again, 0 to 1 and back to 0.
+// How far a foot is behind its touchdown as a fraction of its path: in stance from 0 to 1, in swing back to 0.
 double footDisplacement(double phase) {
   if (phase < kDutyFactor) return phase / kDutyFactor;
   return 1 - smoothRise((phase - kDutyFactor) / (1 - kDutyFactor));
@@ -70,7 +70,7 @@ Skeleton manyLegged(int pairs) {
   return skeleton.take();
 }
 
-// The foot's bone stands as it rests, the two above it reach for its root.
+// The foot's bone has its rest rotation, the two above it reach for its root.
 void placeLeg(const Skeleton& skeleton, int pair, bool left, const Vec3& tip, std::span<const Affine> rest,
               std::span<const Affine> globals, Pose& pose) {
   const Index upper = skeleton.find(legName("UpperLeg", pair, left)).value(), lower = upper + 1, foot = upper + 2,
@@ -114,8 +114,8 @@ Pose scuttleAt(const Skeleton& skeleton, double seconds) {
   for (int pair = 0; pair < pairs; ++pair) {
     for (const bool left : {true, false}) {
       const double behind = (pair % 2 == 0) == left ? 0 : 0.5, own = strides - behind, phase = own - std::floor(own);
-      const double swing = (phase - kDutyFactor) / (1 - kDutyFactor);  // below 0 while it stands
-      // Ahead of where it rests by half the way that it stands, then back as far, as the body goes on.
+      const double swing = (phase - kDutyFactor) / (1 - kDutyFactor);  // below 0 in stance
+      // Ahead of its rest position by half its path in stance, then back as far, as the body goes on.
       const double pathLength = kDutyFactor * kStride * (0.5 - footDisplacement(phase));
       const Index end = skeleton.find(legName("Foot", pair, left)).value() + 1;
       const Vec3 tip = rest[end].translation() + Vec3(0, kLift * smoothBump(swing), kStride * strides + pathLength);

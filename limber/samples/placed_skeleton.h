@@ -12,8 +12,8 @@ namespace limber {
 // Joints in one space, each after its parent; the rest pose turns nothing.
 class PlacedSkeleton {
  public:
-  // parent  its name; empty for the root
-  // place   metres
+  // parent    its name; empty for the root
+  // position  metres
   void add(const std::string& name, const std::string& parent, const Vec3& position) {
     Joint joint;
     joint.name = name;

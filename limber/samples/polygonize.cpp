@@ -66,7 +66,7 @@ class Grid {
 
   // Where nodes inside touch only across the diagonal of a cube or of its side, surface nets would give a surface that
   // pinches itself. The outside node there that is nearest to the surface is then taken inside, until there is no such
-  // place.
+  // pinch.
   void repair() {
     bool changed = true;
     while (changed) {
@@ -115,7 +115,7 @@ class Grid {
   std::vector<double> values_;
 };
 
-// The mean of the places where the cell's edges cross the surface; false where none does.
+// The mean of the points where the cell's edges cross the surface; false where none does.
 bool cellVertex(const Grid& grid, int i, int j, int k, Vec3& vertex) {
   Vec3 sum = Vec3::Zero();
   int crossings = 0;
@@ -139,7 +139,7 @@ bool cellVertex(const Grid& grid, int i, int j, int k, Vec3& vertex) {
   return true;
 }
 
-// Two quads that share two sides (the grid grazes the surface there) have the same two vertices across: only one of
+// Two quads with two common sides (the grid grazes the surface there) have the same two vertices across: only one of
 // them may be cut along the line between these.
 using Diagonals = std::set<std::pair<Index, Index>>;
 

@@ -1,5 +1,5 @@
-// A body cut into meshes that meet at the very same vertices, stored in the ways that files store them: whatever the
-// last bits of a seam's vertices are, its weights are one.
+// A body cut into meshes that meet at the very same vertices, stored as different files store them: whatever the last
+// bits of a seam's vertices are, its weights are one.
 #include <algorithm>
 #include <cmath>
 #include <functional>

@@ -1,4 +1,4 @@
-// A small dragon that stands on four legs with its wings spread.
+// A small dragon on four legs with its wings spread.
 #include "limber/samples/model_recipe.h"
 
 namespace limber {

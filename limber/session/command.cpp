@@ -616,7 +616,7 @@ std::optional<Command> readNamed(std::string_view name, const JsonView& object) 
   }
 }
 
-// The method "online", which older lists name, held feet and hands as limb-ik does.
+// The method "online", which older lists name, kept feet and hands in contact as limb-ik does.
 void bringUpToDate(Command& command) {
   auto* const retarget = std::get_if<RetargetMotion>(&command);
   if (retarget && retarget->method == "online") retarget->method = "limb-ik";

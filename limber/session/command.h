@@ -72,7 +72,7 @@ struct BeginDrag {
 struct UpdateDrag {
   Ray ray;
   Vec3 view = -Vec3::UnitZ();
-  bool snap = false;  // to round places and angles (snap.h)
+  bool snap = false;  // to round positions and angles (snap.h)
 };
 // The dragged joint turns about its own origin, by degrees about an axis; counts from where the drag began, too.
 struct TurnDrag {
@@ -94,7 +94,7 @@ struct CancelDrag {};
 struct PlaceJoint {
   std::string joint;
   Vec3 position = Vec3::Zero();
-  std::vector<std::string> with = {};  // joints that go as far, the same way
+  std::vector<std::string> with = {};  // joints that are displaced likewise
   bool mirrored = false;               // as of BeginDrag
 };
 // The joint turned so from its rest pose: degrees about the axes of its own frame (a rotation vector).
@@ -124,7 +124,7 @@ struct SetIk {
 struct SetTarget {
   std::string joint;
   Vec3 position = Vec3::Zero();
-  std::vector<std::string> with = {};  // joints that are held where they are
+  std::vector<std::string> with = {};  // joints that are pinned where they are
 };
 struct ClearTarget {
   std::string joint;
@@ -148,31 +148,31 @@ struct MirrorPose {
 };
 
 // Puts the model, or only these joints of it, into a pose of this or of another skeleton (putPose); mirrored: swaps
-// both sides then, as MirrorPose does. Feet that stand are held where they stand then, and targets go along.
+// both sides then, as MirrorPose does. Planted feet are then pinned where they are, and targets go along.
 struct ApplyPose {
   std::string pose;                      // the text of a pose file (pose_file.h)
   std::vector<std::string> joints = {};  // none: all
   bool mirrored = false;
 };
 
-// Tasks for the whole body at once (parseTask: "look-at:head=0,1.6,2"). What is held stays, but for joints of the
-// tasks. The state says what became of each, until the pose is another one.
+// Tasks for the whole body at once (parseTask: "look-at:head=0,1.6,2"). Pinned joints stay, but for joints of the
+// tasks. The state reports the outcome of each, until the pose changes.
 struct ApplyTasks {
   std::vector<std::string> tasks;
   bool rootMoves = false;
 };
 
-// The pose that the model stands in becomes the one that it is bound in.
+// The model's current pose becomes its bind pose.
 struct SetRestPose {};
 struct RenameJoint {
   std::string joint, name;
 };
 
-// Paints weights of a joint with a round brush: add and subtract by `strength` at its middle, replace towards it,
-// smooth evens out those of all joints. What the joint gets the others give in proportion, and take what it loses;
-// where it is alone, the joint above takes it. Locked joints keep theirs. The brush is as wide on the surface as bound,
-// and as far along it: it does not reach what is only near through the air. All dabs are one stroke, in which each
-// place is painted once.
+// Paints weights of a joint with a round brush: adds or subtracts `strength` at its middle, replaces by it, or smooths
+// the weights of all joints. The other joints lose in proportion what the joint gains, and gain what it loses; where
+// there is no other, its parent gains that. Locked joints keep their weights. The brush's radius is measured in bind
+// pose, in space and along the surface: it does not reach across gaps. All dabs are one stroke, in which each position
+// is painted once.
 enum class PaintMode { kAdd, kSubtract, kSmooth, kReplace };
 // A point of the bound surface, on a triangle of the rig's Geometry: (1 - u - v, u, v) of its corners.
 struct SurfaceDab {
@@ -200,9 +200,9 @@ struct MirrorWeights {
   MirrorFrom from = MirrorFrom::kLeft;
 };
 
-// Corrections of the rig that there is; another rig of the model does not have them. The new joint is where `position`
-// is as the model stands, moves nothing until weights are painted for it, and gets a name where it is given none. What
-// a deleted joint moved the joint above moves. A joint that hangs on another one stays where it is.
+// Corrections of the current rig; another rig of the model does not have them. The new joint is at `position` in the
+// model's current pose, moves nothing until weights are painted for it, and gets a name if it is given none. A deleted
+// joint's weights go to its parent. A joint that gets another parent stays where it is.
 struct AddJoint {
   std::string parent;
   Vec3 position = Vec3::Zero();
@@ -226,7 +226,7 @@ struct AddSampleMotion {
   std::string name;  // of sampleMotions()
   bool retarget = false;
 };
-// Puts a clip of a motion onto the model. Again with other options, it takes the place of what it gave before.
+// Retargets a clip of a motion to the model. Repeated with other options, it replaces its earlier result.
 struct RetargetMotion {
   std::string motion;
   std::string clip;  // empty: the motion's first
@@ -236,8 +236,8 @@ struct RetargetMotion {
   bool contacts = true;
 };
 
-// Says of a foot of the motion that the chosen clip is from whether it stands for a while, or takes back what was said;
-// the clip is made anew. What is said stays when the motion is put on by another method or map.
+// Sets whether a foot of the chosen clip's motion is planted in an interval, or takes that back; the clip is made anew.
+// The setting stays when the motion is retargeted by another method or map.
 enum class ContactChange { kPlanted, kFree, kFound };
 struct SetContact {
   std::string foot;         // the motion's joint (ClipSource::feet)
@@ -245,8 +245,8 @@ struct SetContact {
   ContactChange contact = ContactChange::kPlanted;
 };
 
-// Clips of the model one after the other, each going over into the next one for so many seconds (joinMotions): a new
-// clip, named after all of them, or one that came of this in place of what it was.
+// Clips of the model one after the other, each blended into the next one for so many seconds (joinMotions): a new
+// clip, named after all of them, or one made by this command before, which is replaced.
 struct JoinClips {
   std::vector<std::string> clips;
   double seconds = 0.3;
@@ -264,7 +264,7 @@ struct RenameClip {
   std::string clip, name;
 };
 struct ChooseClip {
-  std::string clip;  // empty: none, and the model stands at rest
+  std::string clip;  // empty: none, and the model is in rest pose
 };
 // Shows a moment of the chosen clip; of several only the last one counts, and there is nothing to undo.
 struct SetTime {
@@ -285,7 +285,7 @@ struct KeyOfJoint {
   std::string joint;
   double seconds = 0;
 };
-// Keys go to pivot + scale * (seconds - pivot) + shift, and take the place of those that are there.
+// Keys go to pivot + scale * (seconds - pivot) + shift, and replace those that are there.
 struct EditKeys {
   std::vector<KeyOfJoint> keys;
   double shift = 0;   // seconds
@@ -300,8 +300,8 @@ struct DeleteKeys {
 struct SetJointKey {
   std::string joint;
   double seconds = 0;
-  // How it stands there, from its rest pose: degrees about the axes of its own frame (a rotation vector), metres along
-  // those of its parent's.
+  // The pose there, relative to the rest pose: degrees about the axes of the joint's own frame (a rotation vector),
+  // metres along those of its parent's.
   Vec3 turn = Vec3::Zero();
   Vec3 offset = Vec3::Zero();
 };
@@ -351,7 +351,7 @@ struct ChooseMember {
 struct RenameMember {
   std::string member, name;
 };
-// Where a model stands in the scene. What is attached stays attached, and keeps its new place at its joint.
+// A model's placement in the scene. What is attached stays attached, and keeps its new position at its joint.
 struct PlaceMember {
   std::string member;
   Vec3 position = Vec3::Zero();  // of the model's origin, metres

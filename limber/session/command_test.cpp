@@ -83,7 +83,7 @@ std::vector<Command> oneOfEach() {
           JoinClips{{"walk", "wave"}, 0.5, "both"}};
 }
 
-// The one of that kind, wherever it stands.
+// The only command of that kind in the list.
 template <class C>
 const C& only(const std::vector<Command>& commands) {
   return std::get<C>(*std::find_if(commands.begin(), commands.end(),

@@ -63,7 +63,7 @@ std::vector<Index> jointsOf(const SessionState& state, const C& c) {
   return joints;
 }
 
-// Joints that hold on to a place go back there.
+// Returns pinned joints to their targets.
 void holdTargets(SessionState& state) {
   if (!state.ik || state.targets.empty()) return;
   LimbPull pull(state.rig->skeleton(), state.targets, state.limits.get(), state.solver);
@@ -87,7 +87,7 @@ void editPoseOf(SessionState& state, const PoseEdits& edits) {
   authored(state);
 }
 
-// What is held counts before what is asked for.
+// Pinned joints have priority over the tasks.
 void applyTasks(SessionState& state, const ApplyTasks& command) {
   const Skeleton& skeleton = state.rig->skeleton();
   std::vector<TaskEdit> edits;
@@ -115,12 +115,12 @@ void applyTasks(SessionState& state, const ApplyTasks& command) {
   }
 }
 
-// Where limbs follow by themselves, feet that stand in this pose are held.
+// Pins the feet that are planted in this pose, where limbs follow by themselves.
 void holdStandingFeet(SessionState& state) {
   if (state.limbsFollow && state.ik) state.targets = standingFeet(*state.rig, state.pose);
 }
 
-// Soles that were held are let go where the pose lifts them; what else has a target takes it along.
+// Soles that were pinned are released where the pose lifts them; other joints take their targets along.
 void applyPose(SessionState& state, const ApplyPose& command) {
   state.pose = appliedPose(*state.rig, state.pose, command);
   if (state.limbsFollow && state.ik) {
@@ -360,7 +360,7 @@ struct Session::Runner {
     session.drag_.reset();
     session.commit(command, std::move(next));
   }
-  // What held joints hold on to goes along where the drag moved them.
+  // Moves the targets of pinned joints to where the drag moved these.
   static void letGo(SessionState& next, const Drag& drag) {
     const Skeleton& skeleton = next.rig->skeleton();
     followPose(next, [&](const PinnedTarget& target) {
@@ -750,7 +750,7 @@ void Session::commit(const Command& command, SessionState next) {
   redo_.clear();
   record_->add(command);
 
-  // What paints a rig shares its document.
+  // A rig whose weights alone are edited has the document of the original.
   std::set<const RiggedModel*> rigs;
   std::set<const Asset*> documents;
   std::size_t weights = 0, kept = 0;

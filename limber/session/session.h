@@ -21,15 +21,15 @@
 
 namespace limber {
 
-// What the user works on, at one moment. Copies share everything large, so that each undo step is one.
-// Of ApplyTasks.
 class LiveCharacter;
 
+// Of ApplyTasks.
 struct TaskOutcome {
-  std::string task, outcome;  // as it was asked for; taskOutcome()
+  std::string task, outcome;  // as the command has it; taskOutcome()
   bool met = false;
 };
 
+// What the user works on, at one time. Copies share everything large, so that each undo step is one.
 struct SessionState {
   std::shared_ptr<const Asset> base;  // what rigs are made from: as opened, or with another rest pose
   std::shared_ptr<RigMemory> memory;  // of the base
@@ -43,7 +43,7 @@ struct SessionState {
   std::shared_ptr<const RiggedModel> authoredRig;
   Pose authoredPose;
   bool ik = false;
-  bool limbsFollow = false;  // feet that stand are held while inverse kinematics is on, on each rig of the model anew
+  bool limbsFollow = false;  // planted feet are pinned while inverse kinematics is on, on each rig of the model anew
   std::string solver{kLimbSolver};                  // of ikMethods()
   std::string deformer{kLinearBlendDeformer.name};  // of deformers()
   std::vector<PinnedTarget> targets;
@@ -106,7 +106,7 @@ class Session {
   std::size_t undoCount() const { return undo_.size(); }
   std::size_t stepsMade() const { return stepsMade_; }
 
-  // SetTime, without a place in the record.
+  // SetTime, without an entry in the record.
   void showMoment(double seconds);
 
   // A motion that comes frame by frame (live_character.h): the pose follows it, nothing is recorded, and there is

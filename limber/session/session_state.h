@@ -14,8 +14,8 @@ namespace limber {
 //  "joint_keys": [{"joint": index, "seconds": [...]}] (the same for each joint that has any), "interpolation",
 //  "source": null or {"motion", "clip", "method", "reach", "contacts"},
 //  "sequence": null or {"seconds" (that they overlap), "clips": [{"clip", "from", "to"}]} (JoinClips),
-//  "feet": of the motion, that are kept where they stand: [{"foot": its joint, "part", "planted": [[from, to] seconds],
-//  "edited": whether the user said something of it}]}],
+//  "feet": of the motion, with their plants: [{"foot": its joint, "part", "planted": [[from, to] seconds],
+//  "edited": whether the user changed them}]}],
 //  "clip": the chosen one's index or null,
 //  "seconds",
 //  "snap": {"degrees", "step" (metres)} (snap.h),
@@ -23,7 +23,7 @@ namespace limber {
 //  "confidence", "by"}],
 //  "limits": {joint's name: limit} as in a limits file,
 //  "limit_outlines": [{"joint": index, "length": metres, "closed", "rim": [directions]}] (limit_outline.h), in the
-//  world as its parent stands at rest,
+//  world with its parent in rest pose,
 //  "solver", "deformer", "ik", "limited", "targets": [{"joint": index, "position"}],
 //  "tasks": [{"task", "outcome" (in words), "met"}] (ApplyTasks), "pins": [{"joint": name, "position"}],
 //  "doubts": [indices of joints whose pins would settle most (AutoRig)], "locked": [indices of joints whose weights

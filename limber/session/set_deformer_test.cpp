@@ -33,7 +33,7 @@ std::string jointName(const Session& session, Index joint) {
   return session.state().rig->skeleton().joints.at(joint).name;
 }
 
-// With its limbs bent in several places.
+// With its limbs bent at several joints.
 Session bentBiped() {
   Session session;
   Progress progress;

@@ -28,7 +28,7 @@ std::vector<Index> limbBetween(const Skeleton& skeleton, Index from, Index to);
 // Whether `above` is `joint` or one of its ancestors.
 bool isAncestorOrSelf(const Skeleton& skeleton, Index above, Index joint);
 
-// The last joint without a parent on the way up from `joint`.
+// The last joint without a parent on the path up from `joint`.
 Index rootOf(const Skeleton& skeleton, Index joint);
 
 // The nearest joint above one of which that holds, if any.

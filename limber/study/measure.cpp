@@ -14,7 +14,7 @@ namespace {
 // halves of the creatures (docs/study.md has the figures).
 constexpr bool kAgreesTooLittle = false, kSameJoints = true;
 
-// The distances of skeletons are those without fingers, faces and things held, which no rigger makes.
+// The distances of skeletons are those without fingers, faces and props, which no rigger makes.
 constexpr Measure kMeasures[] = {
     {"joint_to_joint", "joints to artist's joints", "% of the longest side", Better::kLess,
      MeasureSource::kSkeletonTruth, "/without_fingers/joint_to_joint"},

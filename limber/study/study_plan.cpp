@@ -47,7 +47,7 @@ std::vector<std::string> textsOf(const JsonView& object, std::string_view key) {
   return texts;
 }
 
-// Calls `check` for a name at its place in the plan.
+// Calls `check` for a name; its errors then name the entry of the plan.
 template <typename Check>
 void checkAt(const JsonView& value, const std::string& name, const Check& check) {
   try {
@@ -191,14 +191,14 @@ std::vector<RigSetting> settingsOf(const JsonView& rig) {
   return settings;
 }
 
-// Pairs stand in place of what is multiplied out.
+// Pairs replace the lists that are multiplied out.
 void refuseBeside(const JsonView& object, std::initializer_list<std::string_view> lists) {
   for (const std::string_view list : lists) {
     if (object.member(list).exists()) object.fail(fmt::format("has both 'pairs' and '{}'", list));
   }
 }
 
-// The plan's own combinations, in place of all.
+// The plan's own combinations, instead of all.
 std::vector<RigCombination> namedPairs(const JsonView& pairs, const std::vector<RigSetting>& settings,
                                        const PlanMethods& methods) {
   std::vector<RigCombination> combinations;

@@ -10,9 +10,9 @@
 
 namespace limber {
 
-// Stands where a rigger does, for each model's own skeleton with weights made anew.
+// Used like the name of a rigger, for each model's own skeleton with weights made anew.
 inline constexpr std::string_view kOwnSkeleton = "own";
-// What a sample of the program's own is named with, in place of a file: "sample:quadruped".
+// Prefix of the name of one of the program's samples, instead of a file: "sample:quadruped".
 inline constexpr std::string_view kSamplePrefix = "sample:";
 
 // Options of `limber rig` under a name.

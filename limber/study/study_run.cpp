@@ -290,7 +290,7 @@ class StudyRun {
                        [](const MeasuredValue& one) { return one.measure->source == MeasureSource::kModelMotion; });
   }
 
-  // What the commands of a cell have left: measures, and pictures that are moved to their place.
+  // The outputs of a cell's commands: measures, and pictures, which are moved to their final paths.
   CellResult takeCell(const StudyCell& cell, const std::string& key, const JobChain& jobs,
                       const std::vector<JobResult>& results) const {
     CellResult taken;

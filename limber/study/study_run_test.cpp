@@ -1,4 +1,4 @@
-// A shell script stands in for the program: it imitates what each command writes, and fails in every way on demand.
+// A shell script replaces the program: it imitates what each command writes, and fails with every error on demand.
 #include "limber/study/study_run.h"
 
 #include <gmock/gmock.h>

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t kMaxJoints = 400;
 
-// Each joint takes 14 bytes: its parent (a joint before it, or none), a place, and a letter of its name.
+// Each joint takes 14 bytes: its parent (a joint before it, or none), a position, and a letter of its name.
 limber::Skeleton skeletonFrom(const std::uint8_t* data, std::size_t size) {
   limber::Skeleton skeleton;
   constexpr std::size_t kStride = 14;

@@ -1,4 +1,4 @@
-// Stands in for the server where the program is built without the page.
+// Replaces the server where the program is built without the page.
 #include "limber/core/error.h"
 #include "qr_code.h"
 #include "server.h"

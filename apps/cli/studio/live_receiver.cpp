@@ -69,7 +69,7 @@ int boundSocket(int type, int& port, const char* option) {
   return made;
 }
 
-// What one sender's stream has made of it, on its way to the pages.
+// Forwards what one sender's stream has decoded to the pages.
 class LiveSender {
  public:
   explicit LiveSender(LiveFeed& feed) : feed_(feed) {}

@@ -105,7 +105,7 @@ TEST(LiveReceiver, HandsOnVmcsPackets) {
               AllOf(HasSubstr("event: skeleton\ndata: {\"joints\":[{\"name\":\"Hips\""), HasSubstr("\"Head\"")));
   sender.send(Bytes(17 * 1024, 'x'));
   sender.send(Bytes(100, 'x'));
-  while (!feed.next(seen, 100ms).empty()) continue;  // what was under way
+  while (!feed.next(seen, 100ms).empty()) continue;  // what was in transit
   sender.send(bone("Hips", 1.25));
   EXPECT_THAT(eventsUntil(",0,1.25,0,", feed, seen), AllOf(HasSubstr(",0,1.25,0,"), Not(HasSubstr("skeleton"))));
 }

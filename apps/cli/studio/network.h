@@ -8,13 +8,12 @@
 
 namespace limber::cli {
 
-// "192.168.1.20" or "fd00::5", in the one way of writing it that the system has; nothing where it is no numeric
-// address.
+// "192.168.1.20" or "fd00::5", in the system's canonical form; nothing where it is no numeric address.
 std::optional<std::string> numericAddress(std::string_view text);
 
 bool isLoopback(const std::string& address);
 
-// As it stands in an address of the web: "192.168.1.20", "[fd00::5]".
+// As written in a URL: "192.168.1.20", "[fd00::5]".
 std::string inAddressBar(const std::string& address);
 
 // Those of interfaces that are up, IPv4 first, without loopback and IPv6 addresses of one link alone, which a browser

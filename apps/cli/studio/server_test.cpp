@@ -16,7 +16,7 @@
 
 namespace limber::cli {
 
-// In place of a built page.
+// Instead of a built page.
 std::span<const StudioFile> studioFiles() {
   static const std::string large(1 << 20, 'x');
   static const StudioFile files[] = {{"/index.html", "<!doctype html>page"}, {"/large.bin", large}};

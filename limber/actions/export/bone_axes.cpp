@@ -40,9 +40,9 @@ enum class BoneKind {
 struct KindAxes {
   BoneKind kind;
   Direction bone;  // along it
-  int alongYAxis;  // the axis that tells the roll where y lies along the bone, and its way
+  int alongYAxis;  // the axis that fixes the roll where y lies along the bone, and its direction
   Direction alongYDirection;
-  double unrealX;     // 1: x along the bone, -1: against it, 0: straight up, whichever way the bone goes
+  double unrealX;     // 1: x along the bone, -1: against it, 0: straight up, whatever the bone's direction
   Direction unrealY;  // where y points
 };
 

@@ -1,4 +1,4 @@
-// Which way joints' own axes point along and across their bones.
+// The directions of joints' own axes along and across their bones.
 #pragma once
 
 #include <span>
@@ -12,7 +12,7 @@ namespace limber {
 enum class BoneAxes {
   kAsTheyAre,
   kAlongY,  // Godot's SkeletonProfileHumanoid and Blender: +y along each bone
-  kUnreal,  // the mannequin's: +x along bones, -x along legs; on the right all three axes the other way
+  kUnreal,  // the mannequin's: +x along bones, -x along legs; on the right all three axes are negated
 };
 
 // #J turns in the skeleton's space that joints stand with in bind pose. A person's as the program's own skeleton has

@@ -109,7 +109,7 @@ void addConstraint(const gltf::Document& document, const SceneGraph& graph, Inde
   }
 }
 
-// Nodes in whose own axes something is said: what they hold, colliders of springs, constraints, the place of the eyes.
+// Nodes in whose own axes something is given: their contents, colliders of springs, constraints, the eyes' position.
 std::set<Index> nodesThatKeepAxes(const gltf::Document& document, const SceneGraph& graph) {
   std::set<Index> nodes;
   for (Index n = 0; n < document.nodeCount(); ++n) {

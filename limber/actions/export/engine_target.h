@@ -31,10 +31,10 @@ std::span<const EngineTarget> engineTargets();
 // Throws Error kBadArgument with the names that there are.
 const EngineTarget& findTarget(std::string_view name);
 
-// The same model as the target expects it. The joints of the skeleton have its names and stand with its axes; where it
-// asks for a root, a joint at the origin carries them all, nodes above the skeleton are gone, and joints have no scale
-// in bind pose. Nodes that are no joints give way to names of joints. Surface, bind pose and clips look as they did;
-// inverse bind matrices and keys are new.
+// The same model as the target expects it. The joints of the skeleton have the target's names and axes; where it asks
+// for a root, a joint at the origin is the parent of them all, nodes above the skeleton are gone, and joints have no
+// scale in bind pose. A node that is no joint is renamed where a joint needs its name. Surface, bind pose and clips
+// look as they did; inverse bind matrices and keys are new.
 //
 // Joints keep their axes where something else depends on them: a mesh, a camera or an extension of the node,
 // colliders, a view's offset. Joints whose scale is uneven are turned by quarters. The warning "kept-axes" counts both.

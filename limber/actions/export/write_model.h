@@ -1,4 +1,4 @@
-// The one place that knows which formats a model is written in.
+// The formats that a model is written in, all known here alone.
 #pragma once
 
 #include <filesystem>
@@ -22,7 +22,7 @@ struct WriteModelOptions {
   std::optional<FbxUnit> fbxUnit;                  // none: the target's
   FbxUpAxis fbxUp = FbxUpAxis::kY;
   VrmMeta vrm;                                  // of a VRM
-  std::span<const OutputFile> companions = {};  // written with the model, and standing in their places before it
+  std::span<const OutputFile> companions = {};  // written with the model, and moved to their paths before it
 };
 
 // ".glb", ".gltf", ...

@@ -18,7 +18,7 @@ struct ClipEdits {
   bool loop = false;                     // cut to its best loop and joined (findLoop, joinLoop), where it has one
   bool inPlace = false;                  // without the body's travel (clipInPlace)
   std::optional<std::string> rootJoint;  // the travel goes to the root joint; where there is none it gets this name
-  bool height = false, heading = false;  // what of the travel besides the way over the ground (RootMotionOptions)
+  bool height = false, heading = false;  // travel taken besides that over the ground (RootMotionOptions)
   double smoothing = 0.3;                // seconds, likewise
   std::optional<double> frameRate;       // keys a second
   std::optional<double> tolerance;       // metres, above 0: fewest keys (reduceKeys), written compactly

@@ -240,8 +240,8 @@ void mix(std::uint64_t& hash, const Vec3f& value) {
   }
 }
 
-// Vertices that begin at one place and move alike are one point. Sequences are told apart by 64 bits of hash, and only
-// among vertices at one place.
+// Vertices that begin at one position and move alike are one point. Sequences are distinguished by 64 bits of hash, and
+// only among vertices at one position.
 std::vector<Index> pointsOf(VertexPoser& poser, const std::vector<Moment>& moments, Progress& progress) {
   const std::vector<Vec3f>& rest = poser.geometry().positions;
   std::vector<std::uint64_t> hashes(rest.size(), 0);

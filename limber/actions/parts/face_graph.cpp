@@ -43,7 +43,7 @@ Faces measureFaces(const TriMesh& mesh, const SurfaceEdges& surface, std::vector
   return faces;
 }
 
-// The straight way between the centroids once the triangles are unfolded about the edge from p to q.
+// The straight distance between the centroids once the triangles are unfolded about the edge from p to q.
 double unfoldedDistance(const Vec3& a, const Vec3& b, const Vec3& p, const Vec3& q) {
   const double length = (q - p).norm();
   if (!(length > 0)) return (a - p).norm() + (b - p).norm();

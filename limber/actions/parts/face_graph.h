@@ -18,14 +18,14 @@ struct FaceArc {
   bool isLink = false;
 };
 
-// Arcs as in Katz, Tal 2003, Hierarchical mesh decomposition using fuzzy clustering and cuts, section 3: with the way
-// between the triangles' centroids over the shared edge (geo) and ang = eta (1 - cos of the angle between the normals),
-// eta = 1 where the surface is concave and little where it is convex,
+// Arcs as in Katz, Tal 2003, Hierarchical mesh decomposition using fuzzy clustering and cuts, section 3: with the path
+// length between the triangles' centroids over the shared edge (geo) and ang = eta (1 - cos of the angle between the
+// normals), eta = 1 where the surface is concave and little where it is convex,
 //     distance = delta geo / mean(geo) + (1 - delta) ang / mean(ang)
 //     capacity = length / mean(length) / (1 + ang / mean(ang))
 // The length is ours: cuts are short in metres, however the surface is triangulated. An edge with more than two
-// triangles joins each to the next. What hangs together by a vertex alone is linked there, and pieces where
-// they are nearest (pieceLinks), each link as one sharp concave edge, so that the graph is connected.
+// triangles joins each to the next. Pieces that meet in a vertex alone are linked there, others where they
+// are nearest (pieceLinks), each link as one sharp concave edge, so that the graph is connected.
 struct FaceGraph {
   std::vector<double> areas;    // #F
   std::vector<FaceArc> arcs;    // ordered by shared edge, links last
@@ -39,7 +39,7 @@ struct FaceGraph {
   Index across(Index arc, Index face) const { return arcs[arc].a == face ? arcs[arc].b : arcs[arc].a; }
 };
 
-// mesh  any, each triangle with three different vertices (prepareMesh); triangles may face either way
+// mesh  any, each triangle with three different vertices (prepareMesh); triangles of either orientation
 // Cost: O(#F), and pieceLinks.
 FaceGraph faceGraph(const TriMesh& mesh);
 

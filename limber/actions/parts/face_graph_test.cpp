@@ -12,7 +12,7 @@ namespace {
 class FaceGraphOf : public ::testing::TestWithParam<testing::NamedMesh> {};
 INSTANTIATE_TEST_SUITE_P(Catalogue, FaceGraphOf, ::testing::ValuesIn(testing::catalogue()), testing::MeshName());
 
-// Shortest ways by relaxing all arcs until nothing changes (Bellman, Ford).
+// Shortest paths by relaxing all arcs until nothing changes (Bellman, Ford).
 std::vector<double> relaxed(const FaceGraph& graph, Index from) {
   std::vector<double> distances(graph.faceCount(), 1e300);
   distances[from] = 0;

@@ -29,9 +29,9 @@ struct FuzzyParts {
 // Cost: that of the flows.
 std::vector<Index> cutFuzzyParts(const FaceGraph& graph, const FuzzyParts& fuzzy, double fuzziness, Progress& progress);
 
-// Gives what is scattered over other parts to these: a connected patch of a part that holds less than a tenth of its
-// area, and is not its largest, goes to the part with which it shares the longest boundary. Pieces of the model are
-// never split off or merged by this. Throws Error kCancelled. Cost: O(#F log #F) a round, at most 8 rounds.
+// Gives patches scattered over other parts to these: a connected patch of a part that has less than a tenth of its
+// area, and is not its largest, goes to the part with which it has the longest common boundary. Pieces of the model
+// are never split off or merged by this. Throws Error kCancelled. Cost: O(#F log #F) a round, at most 8 rounds.
 void mergeIslands(const FaceGraph& graph, std::vector<Index>& partOf, Progress& progress);
 
 }  // namespace limber

@@ -27,7 +27,7 @@ bool MaxFlow::findLevels(Index source, Index sink) {
   return level_[sink] != kNoIndex;
 }
 
-// Walks forward along the levels, each time on from where the last way was full; a dead end is never entered again.
+// Walks forward along the levels, each time on from where the last path was full; a dead end is never entered again.
 double MaxFlow::blockingFlow(Index source, Index sink) {
   double flow = 0;
   currentArc_ = firstArc_;

@@ -31,7 +31,7 @@ class MaxFlow {
   struct Arc {
     Index to = 0;
     Index next = kNoIndex;  // of the same node
-    double room = 0;        // what may still flow; arc i ^ 1 runs the other way
+    double room = 0;        // residual capacity; arc i ^ 1 is the reverse
   };
 
   bool findLevels(Index source, Index sink);

@@ -26,8 +26,8 @@ struct PartOptions {
 PartMethod parsePartMethod(std::string_view name);
 PartDetail parsePartDetail(std::string_view name);
 
-// A part for each triangle of `geometry`, which is collectGeometry(asset). Vertices at one place count as one;
-// triangles with two corners at one place go with a triangle beside them. Throws Error kBadArgument where parts by
+// A part for each triangle of `geometry`, which is collectGeometry(asset). Vertices at one position count as one;
+// triangles with two corners at one position go with a triangle beside them. Throws Error kBadArgument where parts by
 // weights are asked of a model without a rig, and what the methods throw. Cost: theirs and O(#F).
 SurfaceParts modelParts(const Asset& asset, const Geometry& geometry, const PartOptions& options, Progress& progress);
 

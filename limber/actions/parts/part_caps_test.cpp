@@ -39,7 +39,7 @@ TriMesh cappedPart(const TriMesh& mesh, std::span<const Index> partOf, Index par
   return result;
 }
 
-// Counts of edges by how many triangles they have, and whether as many run one way as the other.
+// Counts of edges by how many triangles they have, and whether as many run in one direction as in the other.
 struct Closedness {
   std::size_t unbalanced = 0, crowded = 0;
 };

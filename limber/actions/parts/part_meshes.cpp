@@ -20,7 +20,7 @@ namespace limber {
 
 namespace {
 
-// Nodes whose meshes become one for each part: one node, or all without morph targets that share a skin.
+// Nodes whose meshes become one for each part: one node, or all without morph targets that have the same skin.
 struct SplitGroup {
   std::vector<Index> nodes;
   std::optional<Index> skin;

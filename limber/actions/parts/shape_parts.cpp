@@ -116,7 +116,7 @@ struct Representatives {
   std::vector<double> gains;  // one more than patches where there would be a next one
 };
 
-// The patch farthest from all representatives that stands for enough of the surface: tips of ears and folds of cloth
+// The patch farthest from all representatives that represents enough of the surface: tips of ears and folds of cloth
 // are far from everything. The very farthest where none does.
 Index farthest(const PatchDistances& distances, std::span<const float> nearest) {
   std::vector<Index> order(nearest.size());

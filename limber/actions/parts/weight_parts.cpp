@@ -53,7 +53,7 @@ JointGroups limbGroups(const Skeleton& skeleton) {
       groups.groupOf.push_back(groups.groupOf[*parent]);
       continue;
     }
-    // What stands above the body, such as an armature's root, belongs to its first part.
+    // Ancestors of the body, such as an armature's root, belong to its first part.
     const std::size_t number = part.value_or(0);
     if (anatomy.parts.empty()) {
       groups.groupOf.push_back(static_cast<Index>(groups.names.size()));

@@ -185,7 +185,7 @@ TEST(PoseIo, AWrittenPoseIsReadAgainAndTouchesOnlyWhatMoved) {
     const bool moved = n == skeleton.jointNode[1];
     EXPECT_EQ(after["nodes"][n] == before["nodes"][n], !moved);
   }
-  // What is bound stays bound the same way: the vertices stand where the pose takes them.
+  // The binding stays the same: the vertices are where the pose takes them.
   const PosedGeometry there = posedGeometry(back, again, stance);
   for (std::size_t v = 0; v < here.geometry.positions.size(); ++v) {
     EXPECT_LT((here.geometry.positions[v] - there.geometry.positions[v]).norm(), 1e-5f);

@@ -12,9 +12,8 @@
 
 namespace limber {
 
-// All in world space: metres, and the world's axes whichever way the joint's own point. `where` is the place that an
-// edit was read from, "poses.json: poses[0].turn[1]" or the text itself in quotes: for errors found later, may be
-// empty.
+// All in world space: metres, and the world's axes, not the joint's own. `where` says what an edit was read from,
+// "poses.json: poses[0].turn[1]" or the text itself in quotes: for errors found later, may be empty.
 struct JointTurn {
   std::string joint;
   Vec3 axis = Vec3::UnitY();  // unit vector

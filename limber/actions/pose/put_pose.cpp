@@ -37,7 +37,7 @@ SkeletonMap matchBodies(const PortablePose& pose, const Motion& posed, const Ske
   }
 }
 
-// What the body stands on, as far as both have it; else the joints that nothing is above.
+// The joints that support the body, as far as both have them; else the root joints.
 std::vector<Index> standingJoints(const SkeletonMap& map, const Skeleton& skeleton) {
   std::vector<Index> joints;
   for (const JointMatch& match : map.matches) {

@@ -14,7 +14,7 @@ namespace limber {
 
 // What to do with a model that has a rig of its own.
 enum class ExistingRig {
-  kRefuse,        // throw Error kUnsupported that names both ways out
+  kRefuse,        // throw Error kUnsupported that names both alternatives
   kReplace,       // take it out first
   kKeepSkeleton,  // keep it, make only the weights anew; no rigger runs
 };
@@ -25,8 +25,8 @@ struct AutoRigOptions {
   RigOptions rig;  // pins in world space
   WeightOptions weights;
   ExistingRig existingRig = ExistingRig::kRefuse;
-  bool chains = false;  // what hangs gets joints of its own that swing (HangingChain), where a rigger finds bodies
-  bool standUpright = false;  // turn a model that stands along another axis than +Y; else there is a warning
+  bool chains = false;  // appendages get joints of their own that swing (HangingChain), where a rigger finds bodies
+  bool standUpright = false;  // rotate a model whose up axis is not +Y; else there is a warning
 };
 
 // A node whose mesh has vertices that no bone reaches.
@@ -41,18 +41,18 @@ struct AutoRigReport {
   Index maxInfluences = 0;                    // as asked for
   Index removedJoints = 0, removedClips = 0;  // of the old rig, with ExistingRig::kReplace
   std::vector<HandleSuggestion> suggestions;
-  bool isAbstained = false;            // handles in place of a template (AutoRig)
+  bool isAbstained = false;            // handles instead of a template (AutoRig)
   std::vector<TemplateMatch> matches;  // of templates that were tried, likeliest first
-  std::vector<std::string> chains;     // names of what got joints of its own (AutoRigOptions::chains)
-  std::vector<std::string> doubts;     // joints whose pins would settle most (AutoRig)
+  std::vector<std::string> chains;     // names of chains that got joints of their own (AutoRigOptions::chains)
+  std::vector<std::string> doubts;     // ambiguous joints, whose pins would settle most (AutoRig)
   std::vector<BridgedNode> bridged;    // most vertices first
   Warnings warnings;                   // of reading and of every stage
   std::vector<StageTime> stages;
 };
 
-// Rigs in place. Warnings of its own: bridged-pieces and bridged-vertices (the node that has most of them is where),
+// Rigs in place. Warnings of its own: bridged-pieces and bridged-vertices (`where` is the node that has most of them),
 // single-joint (the kept skeleton moves everything by one joint), turned-upright and not-upright (where a template is
-// sure, or `rig.up` tells, that the model stands along another axis than +Y), maybe-not-upright (where it is not sure).
+// sure, or `rig.up` says, that the model's up axis is not +Y), maybe-not-upright (where it is not sure).
 // On an Error, whose where() begins with the asset's name, the asset is as it was.
 AutoRigReport autoRig(Asset& asset, const AutoRigOptions& options, Progress& progress);
 

@@ -8,7 +8,7 @@ namespace limber {
 
 namespace {
 
-// Calls visit(joint, share) for each joint that moves a part of the triangle.
+// Calls visit(joint, fraction) for each joint that moves a part of the triangle.
 template <class Visit>
 void forEachInfluence(const SkinWeights& weights, const Triangle& triangle, const Visit& visit) {
   for (const Index corner : triangle) {

@@ -16,7 +16,7 @@ namespace limber {
 namespace {
 
 constexpr Index kSegments = 3;
-// Cloth falls, a tail is held up.
+// Cloth falls, a tail is raised.
 constexpr double kClothStiffness = 0.5, kClothGravity = 0.5, kTailStiffness = 1, kTailGravity = 0.1;
 constexpr double kDrag = 0.4;
 constexpr double kShortest = 1e-4;    // longest sides: what reaches no farther does not hang
@@ -51,7 +51,7 @@ std::vector<Vec3> middlesOf(const PreparedMesh& prepared, const HungAccessory& h
   return middles;
 }
 
-// How far along the bent line from 0 to kSegments the nearest place to a point lies.
+// The parameter, 0 to kSegments along the polyline, of its point nearest to `point`.
 double alongLine(const std::vector<Vec3>& line, const Vec3& point) {
   double best = 0, nearest = std::numeric_limits<double>::infinity();
   for (Index i = 0; i < kSegments; ++i) {
@@ -119,7 +119,7 @@ std::vector<HangingChain> addChains(const PreparedMesh& prepared, const Accessor
     }
     for (const Index v : hung[a].vertices) {
       const Vec3 position = prepared.mesh.position(v);
-      // A joint holds the middle of its segment alone, and shares its ends.
+      // One joint alone moves the middle of its segment; the ends are blended with its neighbours'.
       const double at = std::clamp(alongLine(line, position) - 0.5, 0.0, kSegments - 1.0);
       const Index upper = std::min(static_cast<Index>(at), kSegments - 2);
       const auto lower = static_cast<float>(weights.slots > 1 ? at - upper : std::round(at - upper));

@@ -30,8 +30,8 @@ std::optional<FittedSkeleton> fittedSkeleton(const Asset& asset, const Geometry&
 std::vector<JointLandmark> commonLandmarks(const Skeleton& source, const Skeleton& target);
 
 // The same by one template in both bodies. Makers put a hip, a neck or a wrist elsewhere in the same body than the
-// template does; so each joint keeps its place against the source's own template (alignLimbs), unless it is as
-// far from that as templates are only when they are wrong.
+// template does; so each joint keeps its position relative to the source's own template (alignLimbs), unless it
+// is as far from that as templates are only when they are wrong.
 // size  of the source's body
 std::vector<JointLandmark> landmarksByTemplate(const Skeleton& source, const Skeleton& inSource,
                                                const Skeleton& inTarget, double size);

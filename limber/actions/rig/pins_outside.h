@@ -11,7 +11,7 @@ namespace limber {
 
 // Adds the warning "pins-outside", counted, where pins lie outside the surface by more than a hand is thick: the
 // numbers are then of another pose or another model. It names the farthest and its distance in metres. Inside is where
-// the winding number is above a half, whichever way round the surface is.
+// the winding number is above a half, whatever the surface's orientation.
 //
 // pins  in the source's space (mesh.frame)
 void warnPinsOutside(const PreparedMesh& mesh, std::span<const JointPin> pins, Warnings& warnings);

@@ -71,7 +71,7 @@ void addChannel(gltf::Animation& clip, const char* path, gltf::AnimationSampler 
   clip.channels.push_back(std::move(channel));
 }
 
-// A strip with a morph target for each bend, played one after the other, on a node that stands aside and turns as well.
+// A strip with a morph target for each bend, played one after the other, on a node that is translated and rotated.
 Asset morphingStrip(int frames, double reach, bool isTurning = true) {
   Asset asset;
   asset.name = "strip.glb";

@@ -1,5 +1,5 @@
-// What a user asks of rigging, by the names that the program, Python and WebAssembly share. Which options go together,
-// their defaults and their ranges are here alone.
+// A user's request for rigging, by the names common to the program, Python and WebAssembly. Which options go together,
+// their defaults and their ranges are defined here alone.
 #pragma once
 
 #include <functional>
@@ -44,7 +44,7 @@ AutoRigOptions optionsOf(const RigRequest& request);
 // The model that was rigged, as the request's target expects it. What it cannot give goes to the report's warnings.
 void finishRig(Asset& asset, const RigRequest& request, AutoRigReport& report);
 
-// With a template of the user's in place of the request's: read() gives it, once all else is right.
+// With a template of the user's instead of the request's: read() returns it, once all else is valid.
 AutoRigOptions optionsWithOwnTemplate(RigRequest request, std::string_view name, const std::function<Skeleton()>& read);
 // With a template by name, or by its file (readTemplateFile), which is what a name with a dot is.
 AutoRigOptions optionsWithTemplate(RigRequest request, const std::string& nameOrFile);

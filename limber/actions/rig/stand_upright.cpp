@@ -32,7 +32,7 @@ std::string nameOfAxis(const Vec3& direction) {
   return fmt::format("{}{}", direction[axis] < 0 ? '-' : '+', "XYZ"[axis]);
 }
 
-// Onto +Y; one who stands on the head goes on facing where it does.
+// The rotation of `up` onto +Y; a model that is upside down keeps its facing direction.
 Quat turnOf(const Vec3& up) {
   const Eigen::Index axis = nearestAxis(up);
   const Vec3 along = std::copysign(1.0, up[axis]) * Vec3::Unit(axis);
@@ -50,7 +50,7 @@ bool isNamedBiped(const Anatomy& anatomy) {
          isSure(PartKind::kLeg, Side::kRight);
 }
 
-// From a rest pose that lies to clips of which most begin with one who stands along +Y; else none.
+// From a rest pose that lies to clips of which most begin upright along +Y; else the identity.
 Quat turnOfClips(const Motion& motion, const SkeletonReading& skeleton) {
   const Quat turn = turnToStand(skeleton);
   if (turn.isApprox(Quat::Identity())) return turn;

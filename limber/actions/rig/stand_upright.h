@@ -11,18 +11,18 @@
 
 namespace limber {
 
-// The axis that a person in that pose stands along; none where names of joints tell no person, where the pose
+// The up axis of a person in that pose; none where the names of joints are not a person's, where the pose
 // has no form (hasForm), or where head and feet lie to the same side of the hips.
 std::optional<Vec3> uprightAxis(const SkeletonReading& skeleton, const Pose& pose);
 
-// What turns one who stands along another axis in rest pose to stand along +Y; none for all others.
+// The rotation to +Y of a person whose up axis in rest pose is another; the identity for all others.
 Quat turnToStand(const SkeletonReading& skeleton);
 
-// Turns a document that stands along the axis nearest to `up` by a node above it (turnScene), with a warning
+// Rotates a document whose up axis is the one nearest to `up` by a node above it (turnScene), with a warning
 // "turned-upright"; where `turn` is false there is only the warning "not-upright". Nothing where up is about +Y.
 void standUpright(Asset& asset, const Vec3& up, bool turn, Warnings& warnings);
 
-// A warning "maybe-not-upright" where it is not sure that the model stands along another axis than +Y.
+// A warning "maybe-not-upright" where it is not certain that the model's up axis is another than +Y.
 void warnMaybeLies(const Vec3& up, double confidence, Warnings& warnings);
 
 // As standUpright, of a person's skeleton in a document, before clips are added. Where its clips stand and its rest

@@ -18,7 +18,7 @@ using ::testing::ElementsAre;
 
 const std::vector<Vec3> kAxes = {Vec3::UnitX(), -Vec3::UnitX(), -Vec3::UnitY(), Vec3::UnitZ(), -Vec3::UnitZ()};
 
-// The rest pose of one who stands along `up`.
+// A person whose up axis in rest pose is `up`.
 Skeleton personAlong(const Vec3& up) {
   Skeleton person = practiceHumanoid();
   Transform& root = person.joints[0].rest;
@@ -28,7 +28,7 @@ Skeleton personAlong(const Vec3& up) {
   return person;
 }
 
-// Stands still along +Y for a second, whatever the rest pose is.
+// A second of rest, upright along +Y, whatever the rest pose is.
 Clip standingStill() {
   const Transform root = practiceHumanoid().joints[0].rest;
   Clip clip;

@@ -99,7 +99,7 @@ SourceModel readSource(const Asset& asset, Geometry geometry, const Accessories&
   welded.slots = weights.slots;
   welded.joints.assign(std::size_t{result.body.mesh.vertexCount()} * weights.slots, 0);
   welded.weights.assign(welded.joints.size(), 0.0f);
-  for (Index v = weights.vertexCount(); v-- > 0;) {  // the first vertex at a place that has weights counts
+  for (Index v = weights.vertexCount(); v-- > 0;) {  // the first vertex with weights at a position counts
     if (result.prepared.weldedVertex[v] == kNoIndex || !(weights.weightsOf(v)[0] > 0)) continue;
     const std::size_t at = std::size_t{result.prepared.weldedVertex[v]} * weights.slots;
     std::copy(weights.jointsOf(v).begin(), weights.jointsOf(v).end(), welded.joints.begin() + at);

@@ -274,7 +274,7 @@ TEST(TransferAssetTest, ColorsAreThoseOfThePointThatAVertexTakesAfter) {
     Asset target = tallPerson();
     const Geometry geometry = collectGeometry(source);
     TransferAssetOptions options = fewRounds();
-    // Places as colours, so that each vertex of the target says where it was looked for.
+    // Positions as colours, so that each vertex of the target shows where it was looked up.
     options.colors.at = [&](Index triangle, const Vec3& weights) {
       Vec3f position = Vec3f::Zero();
       for (std::size_t k = 0; k < 3; ++k) {

@@ -28,7 +28,7 @@ class LaidColors {
     const std::vector<Triangle>& kept = source.rig.source.triangles;
     for (Index t = 0; t < source.geometry.triangles.size() && triangles_.size() < kept.size(); ++t) {
       const auto& [a, b, c] = source.geometry.triangles[t];
-      const Triangle& next = kept[triangles_.size()];  // two corners may have changed places
+      const Triangle& next = kept[triangles_.size()];  // two corners may have been swapped
       if (std::is_permutation(next.begin(), next.end(), Triangle{welded[a], welded[b], welded[c]}.begin())) {
         triangles_.push_back(t);
       }
@@ -53,7 +53,7 @@ class LaidColors {
   std::vector<Index> triangles_;
 };
 
-// Triangles of one material, which share a picture.
+// Triangles of one material, which have one texture.
 struct Pictured {
   std::vector<Triangle> triangles;
   std::vector<Texel> texels;

@@ -1,4 +1,4 @@
-// Colours of a model's vertices, in place of what it was coloured with.
+// Colours of a model's vertices, instead of those it had.
 #pragma once
 
 #include <functional>

@@ -69,7 +69,7 @@ inline Index nearestMadeJoint(const Vec3& position) {
   return nearest;
 }
 
-// Rigid, but that the 2nd influence of each vertex has a share that grows along the body.
+// Rigid, but that the 2nd influence of each vertex has a weight that grows along the body.
 inline SkinWeights madeWeights(const TriMesh& body) {
   SkinWeights weights;
   weights.slots = 2;

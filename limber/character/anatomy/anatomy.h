@@ -55,9 +55,9 @@ struct Part {
   std::vector<Index> branches;  // what branches off it and is no part of its own: feathers, face bones, a second pelvis
   // Of legs and arms. `upper`: hip or shoulder; joints before it (collars, shoulder blades) are the limb's base.
   // `middle`: knee or elbow. `hock`: the raised heel, or wrist, of a digitigrade leg. `end`: ankle or wrist, or the
-  // ball or hoof that a digitigrade leg stands on. `toes`: the first joint after the end, of feet.
+  // ball or hoof on which a digitigrade leg rests. `toes`: the first joint after the end, of feet.
   std::optional<Index> upper, middle, hock, end, toes;
-  std::optional<std::size_t> carrier;  // the part that it hangs on; none for the trunk and for what hangs on nothing
+  std::optional<std::size_t> carrier;  // the part to which it is attached; none for the trunk and for unattached parts
   double confidence = 0;               // probability that kind, side and landmarks are right
   Evidence evidence = Evidence::kForm;
 
@@ -103,13 +103,13 @@ struct AnatomyOptions {
 // The body of a skeleton in a pose. A conditional random field over the folded skeleton (half_body.h): each joint's
 // state (a kind, for limbs with the segment) has a score by where and how it lies and by its name, each pair of parent
 // and child one for their states; the weights are learned from labelled skeletons (tools/fit_anatomy.cpp). Up, front
-// and left are read along with the states: each possible direction is one reading, and the likeliest stands.
+// and left are inferred along with the states: each possible direction is a hypothesis, and the likeliest is chosen.
 // Confidences are the field's own marginals. Lafferty, McCallum, Pereira 2001; exact inference on trees. Bones that the
-// file declares (Joint::declaredBone) are certain, and so are left and right where they have sides; all else is read
-// around them. Only where no body can have them as they hang are they passed over.
+// file declares (Joint::declaredBone) are certain, and so are left and right where they have sides; all else is
+// inferred around them. They are ignored only where no body can have them in that hierarchy.
 //
-// Any finite skeleton gets an answer; a body without any form (all joints in one place) has all joints in one trunk or
-// in none. Throws Error kBadData where a position is not finite. Cost: about linear in the joints; 0.6 ms for 100.
+// Any finite skeleton gets an answer; a body without any form (all joints at one position) has all joints in one trunk
+// or in none. Throws Error kBadData where a position is not finite. Cost: about linear in the joints; 0.6 ms for 100.
 Anatomy readAnatomy(const Skeleton& skeleton, const Pose& pose, const AnatomyOptions& options = {});
 Anatomy readAnatomy(const Skeleton& skeleton, const AnatomyOptions& options = {});
 

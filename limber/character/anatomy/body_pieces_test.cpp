@@ -74,7 +74,7 @@ TEST(BodyPieces, BentKneesTellTheFront) {
                         {{name + "UpperLeg", turn(-Vec3::UnitX(), 20)}, {name + "LowerLeg", turn(Vec3::UnitX(), 40)}});
   }
   expectRight(person);
-  for (Joint& joint : person.joints) {  // the same person seen from behind: few files face that way
+  for (Joint& joint : person.joints) {  // the same person seen from behind: few files face that direction
     if (!joint.parent) joint.rest.rotation = turn(Vec3::UnitY(), 180);
   }
   const Anatomy behind = readAnatomy(limber::testing::nameless(person));

@@ -13,14 +13,14 @@ namespace {
 
 constexpr std::size_t kMaxCompared = 64;  // children of one joint; a hand has five
 constexpr double kMinWidth = 1e-3;        // of the body's size: joints nearer to the plane are no pair
-// Costs of a pair, each 0 for mirror images: lengths and counts as shares of the greater, places in lengths of what
-// hangs there. A limb turned by 90 degrees about where it begins costs about 0.7.
-constexpr double kMaxDifference = 0.35;  // share of length, and of joints
+// Costs of a pair, each 0 for mirror images: differences of lengths and counts as fractions of the greater, of
+// positions in lengths of the subtree there. A limb turned by 90 degrees about where it begins costs about 0.7.
+constexpr double kMaxDifference = 0.35;  // fraction of length, and of joints
 constexpr double kMaxCost = 1.2;         // of the sum: a limb may be turned by 90 degrees and be as unlike besides
 constexpr double kNamedCost = 0.1;       // of partners by name that are not alike at all
 // Of the labelled skeletons those without left and right have at most 0.04 by chance, all others at least 0.11.
 constexpr double kMinPaired = 0.07;
-constexpr double kContradict = 0.2;  // share of named limbs that lie the other way round than the rest
+constexpr double kContradict = 0.2;  // fraction of named limbs whose sides are opposite to those of the rest
 constexpr double kClearly = 1.25;    // times the length that has partners
 constexpr double kNearPlane = 0.01;  // of the body's size: what is that near to the plane lies in it
 constexpr double kInPlane = 0.35;    // sine of the angle to the plane, up to which what has no partner lies in it
@@ -46,7 +46,7 @@ class Folder {
 
   HalfBody fold() {
     HalfBody best = foldAcross();
-    // Where names and places contradict each other about sides, as where limbs hang together at rest, names decide.
+    // Where names and positions contradict each other about sides, as where limbs hang together at rest, names decide.
     double agree = 0, differ = 0;
     for (const HalfJoint& half : best.joints) {
       if (half.parent && best.joints[*half.parent].kind == HalfKind::kPair)
@@ -144,7 +144,7 @@ class Folder {
   }
 
   bool areNamed(Index a, Index b) const { return !named_.empty() && named_[a] && named_[a]->partner == b; }
-  // The one on the positive side; in one place the left one.
+  // The one on the positive side; at the same position the left one.
   bool isNamedFirst(Index a, Index b, double plane) const {
     const double one = across(middle_[a]) - plane, other = across(middle_[b]) - plane;
     const bool apart = std::abs(one - other) > 2 * kMinWidth * size_;
@@ -280,8 +280,8 @@ class Folder {
     }
   }
 
-  // The children of one of a pair, where a single joint that the other side lacks (a twist joint, say) gives way to
-  // what hangs on it: that is more like the other side's child.
+  // The children of one of a pair. A single joint that the other side lacks (a twist joint, say) is replaced by its
+  // children, which are more like the other side's child.
   std::vector<Index> withoutExtra(Index joint, Index partner, const Open& at, std::vector<Open>& open) {
     const std::span<const Index> children = tree_.children(joint), others = tree_.children(partner);
     if (children.size() != 1 || others.size() != 1 || tree_.children(children[0]).size() != 1)
@@ -304,7 +304,7 @@ class Folder {
   std::span<const Vec3> positions_;
   std::span<const std::optional<NamedPartner>> named_;
   std::vector<double> length_;  // #J, of all bones that hang on it
-  std::vector<Vec3> middle_;    // #J, mean place of it and all that hangs on it
+  std::vector<Vec3> middle_;    // #J, mean position of it and all its descendants
   double size_ = 1, allBones_ = 0;
   HalfBody body_;
   bool sidesByName_ = false, pairs_ = true;

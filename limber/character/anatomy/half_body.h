@@ -27,20 +27,21 @@ struct NamedPartner {
 };
 
 struct HalfBody {
-  std::vector<HalfJoint> joints;  // parents first; every joint of the skeleton stands in exactly one
-  Vec3 lateral = Vec3::UnitX();   // across the plane of symmetry, of length 1; which side is left it does not tell
+  std::vector<HalfJoint> joints;  // parents first; every joint of the skeleton is in exactly one
+  Vec3 lateral = Vec3::UnitX();   // across the plane of symmetry, of length 1; it does not say which side is left
   double pairedFraction = 0;      // of the length of all bones, less where they are no mirror images
-  bool sidesByName = false;       // names, not places, tell which of a pair is which: the first is the left one
+  bool sidesByName = false;       // names, not positions, say which of a pair is which: the first is the left one
   bool hasPairs = false;          // else `lateral` is a guess
 };
 
-// Joints are partners that hang on partners, or on one joint in the plane, with as much hanging on them, about as long,
-// and where the mirror image lies, as far as the pose allows: limbs may be turned. The plane is that which makes most
-// of the skeleton's length pairs. Cost: for each joint the square of its children (at most 64 of them are compared).
+// Joints are partners if they are children of partners, or of one joint in the plane, with subtrees and lengths about
+// the same, and lie where the mirror image lies, as far as the pose allows: limbs may be turned. The plane is that
+// which makes most of the skeleton's length pairs. Cost: for each joint the square of its children (at most 64 of them
+// are compared).
 //
 // positions  #J, world
-// named      #J partners by their names, none where names tell none; empty: as if joints had none. They are partners
-//            even where they lie in one place; the left one is then the first.
+// named      #J partners by their names, none where names give none; empty: as if joints had none. They are partners
+//            even if they lie at one position; the left one is then the first.
 HalfBody foldBody(const JointTree& tree, std::span<const Vec3> positions,
                   std::span<const std::optional<NamedPartner>> named = {});
 

@@ -21,7 +21,7 @@ HalfBody folded(const Skeleton& skeleton) {
   return foldBody(tree, restPositions(skeleton));
 }
 
-// Each joint stands in one half joint, and parents come first.
+// Each joint is in one half joint, and parents come first.
 void expectWhole(const HalfBody& body, const Skeleton& skeleton) {
   std::vector<int> times(skeleton.jointCount(), 0);
   for (std::size_t i = 0; i < body.joints.size(); ++i) {
@@ -152,7 +152,7 @@ TEST(HalfBody, NamesPairJointsThatLieInOnePlace) {
   EXPECT_EQ(pairs, body.hasPairs ? 9u : 0u);
 }
 
-// Feet that rest in one place under a body that has its sides.
+// Feet that rest at one position under a body that has its sides.
 TEST(HalfBody, NamesPairFeetInOnePlace) {
   Skeleton person = limber::testing::personWith(NameHabit::kMixamo).skeleton;
   for (Joint& joint : person.joints) {

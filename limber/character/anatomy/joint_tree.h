@@ -35,22 +35,22 @@ class JointTree {
   std::optional<Index> meeting(Index one, Index other) const;
   // The joints below `above` down to `joint`, `joint` included; empty where it is `above` or does not hang on it.
   std::vector<Index> pathBelow(Index above, Index joint) const;
-  // The child of `above` on the way down to `joint`.
+  // The child of `above` on the path down to `joint`.
   std::optional<Index> childTowards(Index above, Index joint) const;
 
  private:
   std::vector<std::optional<Index>> parents_;  // #J
   std::vector<Index> firstChild_, children_;   // #J + 1 offsets into the children, in order of their numbers
   std::vector<Index> roots_;
-  std::vector<Index> order_, index_;  // #J, preorder; where each joint stands in it
+  std::vector<Index> order_, index_;  // #J, preorder; index of each joint in it
   std::vector<Index> count_, depth_;  // #J, of the subtree; 0 of roots
 };
 
-// The skeleton's tree, but each of up to four feet that are roots or hang on a root on the ground hangs on the shin
-// above it, as rigs for inverse kinematics have them, and two legs that hang beside the trunk on such a root hang on
-// the trunk.
+// The skeleton's tree, but each of up to four feet that are roots or children of a root on the ground becomes a child
+// of the shin above it, as in rigs for inverse kinematics, and two legs that are children of such a root beside the
+// trunk become children of the trunk.
 //
-// positions  #J, along `up` as the body stands
+// positions  #J, along `up` in the body's pose
 JointTree withLooseFeetJoined(const Skeleton& skeleton, std::span<const Vec3> positions, const Vec3& up);
 
 }  // namespace limber

@@ -74,7 +74,7 @@ class LegJoiner {
     const std::span<const Index> beside = tree_.children(*parents[legs[0]]);
     const Index trunk = *std::max_element(beside.begin(), beside.end(),
                                           [&](Index a, Index b) { return highBelow_[a] < highBelow_[b]; });
-    if (std::find(legs.begin(), legs.end(), trunk) != legs.end()) return;  // nothing else stands on that joint
+    if (std::find(legs.begin(), legs.end(), trunk) != legs.end()) return;  // no child rises above the legs
     for (const Index leg : legs) parents[leg] = trunk;
   }
 

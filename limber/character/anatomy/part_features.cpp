@@ -181,7 +181,7 @@ enum AxesFeature : std::size_t {
 constexpr double kTiny = 1e-9;         // of the body's size: shorter is rounding
 constexpr std::size_t kMaxLimbs = 64;  // a millipede's would say no more
 
-// Fills a table row by row: room for a row's every feature is made before, so that nothing is checked on the way.
+// Fills a table row by row. Space for all features of a row is reserved first, so that nothing is checked in between.
 class RowWriter {
  public:
   RowWriter(BodyMeasures::Table& table, std::size_t rows) : table_(table) {
@@ -492,7 +492,7 @@ BodyMeasures::Table BodyMeasures::features(const Axes& axes) const {
     }
   }
 
-  // Limbs: how much each is one that stands, or one that is free.
+  // Limbs: how far each is grounded, or free.
   struct Standing {
     double grounded = 0, free = 0;
   };
@@ -521,7 +521,7 @@ BodyMeasures::Table BodyMeasures::features(const Axes& axes) const {
     freeBelow[parent] += freeBelow[i];
   }
 
-  // What stands beside each limb.
+  // The other limbs beside each limb.
   struct Others {
     double grounded = 0, free = 0, groundedAhead = 0, freeAhead = 0;
   };

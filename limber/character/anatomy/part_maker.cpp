@@ -311,8 +311,8 @@ class PartMaker {
     }
   }
 
-  // Beside a limb that is sure a doubtful one of the same kind counts only where it carries as much: of a pair of legs
-  // that the body stands on, straps and coats that hang beside them are attachments, and so are breasts beside arms.
+  // Beside a certain limb, a doubtful one of the same kind counts only if it carries as much: beside a pair of legs
+  // that bear the body's weight, straps and coats are attachments, and so are breasts beside arms.
   void dropDoubtfulLimbs() {
     for (const PartKind kind : {PartKind::kLeg, PartKind::kArm}) {
       const Part* sure = nullptr;

@@ -7,7 +7,7 @@
 
 namespace limber {
 
-// Immutable, cheap to copy (copies share the readings), safe across threads.
+// Immutable, cheap to copy (copies refer to the same readings), thread-safe.
 class SkeletonReading {
  public:
   // A copy of the skeleton. Implicit: a skeleton is a reading of which nothing is made yet.

@@ -14,7 +14,7 @@ namespace limber {
 // do. The highest joint is below the top of the head, so a person is about a tenth taller.
 struct SkeletonSize {
   double height = 0;           // from the lowest joint to the highest, along Anatomy::axes.up
-  double longestSide = 0;      // of the box around the joints, whichever way the body lies
+  double longestSide = 0;      // of the box around the joints, whatever the body's orientation
   std::optional<double> hips;  // height of the trunk's first joint above the lowest joint; none without a trunk
 };
 

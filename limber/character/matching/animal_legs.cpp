@@ -42,7 +42,7 @@ std::optional<Index> carrierOf(const Skeleton& skeleton, Index lower, const std:
 }
 
 // In mean heights of the matched joints, over the lowest of them; set by hand.
-constexpr double kLow = 0.2;      // 0.1 to kBegins; of where a leg stands, at most
+constexpr double kLow = 0.2;      // 0.1 to kBegins; of where a leg rests, at most
 constexpr double kBegins = 0.35;  // kLow to 0.7; of its hip or shoulder, at least
 constexpr double kSteep = 1;      // slope, down over along; 0.5 to 2; of a leg, at least (45 degrees); set by hand
 

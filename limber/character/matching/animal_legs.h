@@ -10,7 +10,7 @@ namespace limber {
 
 // Joints of one side of the map.
 struct LegJoints {
-  Index upper = 0, lower = 0, end = 0;  // hip or shoulder; the joint that bends the leg most; where it stands
+  Index upper = 0, lower = 0, end = 0;  // hip or shoulder; the joint that bends the leg most; where it rests
   std::optional<Index> toes;            // the next joint after the end
   std::optional<Index> hock;            // of those between, the one that bends it most after `lower`
   std::optional<Index> carrier;         // of an end on a root of its own: the joint of the leg that it rides on

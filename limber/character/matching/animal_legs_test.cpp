@@ -37,7 +37,7 @@ TEST(AnimalLegs, StandUnderLongWings) {
   EXPECT_EQ(RetargetSetup(winged, winged, matchSkeletons(winged, winged), {}).animalLegs.size(), 4u);
 }
 
-// A neck held higher makes nobody step further.
+// Raising the neck makes no animal step further.
 TEST(AnimalLegs, TheRootsWayScalesWithThem) {
   const Skeleton one = quadruped(0.5);
   Skeleton other = quadruped(0.35);

@@ -54,7 +54,7 @@ PoseSequence resting(const Skeleton& skeleton, std::size_t frames) {
   return still;
 }
 
-// Both rest in one position; one walks, the other stands a metre beside.
+// Both rest in one position; one walks, the other is still, a metre beside.
 Motion twoActors() {
   const Skeleton person = practiceHumanoid();
   const PoseSequence walking = limber::testing::walk(person);

@@ -14,9 +14,8 @@ namespace limber {
 
 namespace {
 
-// Radians; 15 to 40 degrees; a foot goes along with a shin that is turned by more; set by hand. One that is about as
-// long as its shin does not where the leg comes down from the hip as straight: it ends in a hock, and stands as birds'
-// do.
+// Radians; 15 to 40 degrees; a foot follows a shin that is turned by more; set by hand. A foot about as long as its
+// shin does not if the leg comes down from the hip as straight: it ends in a hock, and rests as birds' do.
 constexpr double kFootGoesAlong = 25 * kPi / 180;
 constexpr double kHock = 0.75;  // foot over shin; 0.6 to 0.9; set by hand on a walking machine with a bird's legs
 constexpr double kBent = 1.03;  // length over distance from end to end; 1.01 to 1.1; of a bent chain; set by hand
@@ -31,7 +30,7 @@ struct Range {
   bool has(double value) const { return value > least && value < most; }
 };
 constexpr Range kArms{0.6, 1.5}, kLegs{0.8, 2.1};
-// Radians; 90 to 130 degrees; least angle at the hips between the head and the feet of who stands; set by hand.
+// Radians; 90 to 130 degrees; least angle at the hips between the head and the feet of an upright person; set by hand.
 constexpr double kOpposite = 100 * kPi / 180;
 
 using body_part::arm;
@@ -102,12 +101,12 @@ double bendOf(const Stance& stance, const std::vector<Vec3>& lefts) {
   return lefts.size() == 2 ? bend + angleOf(lefts[0], lefts[1]) : bend;
 }
 
-// A person in a frame of a motion, turned about the hips to face +Z. Gravity says what is up in one who stands; one who
-// crawls or lies stands up along the trunk.
+// A person in a frame of a motion, turned about the hips to face +Z. Gravity says what is up if the person is upright;
+// a person who crawls or lies is turned upright along the trunk.
 Pose facingAhead(const Skeleton& skeleton, Pose pose, const SkeletonMap& map, MapSide side) {
   const std::vector<Vec3> positions = posePositions(skeleton, pose);
   std::vector<Vec3> lefts = leftsOf(map, side, positions);
-  for (Vec3& each : lefts) each.normalize();  // hips that are turned against the shoulders share the difference
+  for (Vec3& each : lefts) each.normalize();  // for hips that are turned against the shoulders: the mean direction
   const Vec3 trunk = stanceOf(skeleton, pose, map, side).head, level = sumOf(lefts);
   const Vec3 up = angleOf(trunk, Vec3::UnitY()) < kStoops ? Vec3(Vec3::UnitY()) : Vec3(trunk.normalized());
   const Vec3 left = level - level.dot(up) * up;
@@ -203,7 +202,7 @@ void aimLimbs(const SkeletonMap& map, MapSide side, const std::vector<Vec3>& res
   }
 }
 
-// The way through the first joints of parts; nothing where one is missing.
+// The length of the path through the first joints of parts; nothing where one is missing.
 double pathThrough(const SkeletonMap& map, MapSide side, const std::vector<Vec3>& rest,
                    const std::array<BodyPart, 3>& parts) {
   double length = 0;
@@ -228,9 +227,9 @@ std::vector<Index> trunkOf(const SkeletonMap& map, MapSide side) {
   return joints;
 }
 
-// One who stoops at rest (a statue, say) stands up: the hips turn the whole trunk, its middle what is still bent, the
-// neck a head that is bowed. Trunks and necks that lean less, and all of those whose limbs are no person's (a
-// dinosaur's), stand as they were built.
+// A person who stoops at rest (a statue, say) is set upright: the hips turn the whole trunk, its middle the rest of the
+// bend, the neck a head that is bowed. Trunks and necks that lean less, and all of those whose limbs are not human (a
+// dinosaur's), keep their rest pose.
 void aimBentTrunk(const SkeletonMap& map, MapSide side, const std::vector<Vec3>& rest, Aims& aims) {
   const std::vector<Index> trunk = trunkOf(map, side);
   double length = 0;

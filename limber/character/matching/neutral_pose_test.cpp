@@ -132,7 +132,7 @@ TEST_F(NeutralPoses, ShinsWithHocksBendAndThoseWithTwistJointsDoNot) {
   EXPECT_FALSE(shinIsBent(limber::testing::withJointBefore(person, "leftFoot", "twist"), "twist"));
 }
 
-// Motions of some programs have a rest pose in which every bone points the same way.
+// Motions of some programs have a rest pose in which every bone points in the same direction.
 TEST_F(NeutralPoses, AFoldedRestPoseGivesWayToAFrameThatStands) {
   Skeleton folded = person;
   for (Joint& joint : folded.joints) {
@@ -150,8 +150,8 @@ TEST_F(NeutralPoses, AFoldedRestPoseGivesWayToAFrameThatStands) {
   EXPECT_TRUE(isUpright(folded, chosen, map, MapSide::kSource));
 }
 
-// A frame is under gravity, and faces where the motion goes: what stands in for the rest pose is turned to face +Z and
-// to stand, whatever it does there, so that the motion keeps its heading and those who crawl go on crawling.
+// A frame is under gravity, and faces where the motion goes: the pose that replaces the rest pose is turned to face +Z
+// and to be upright, whatever it does there, so that the motion keeps its heading and a crawling motion stays one.
 TEST_F(NeutralPoses, AFrameOfAMotionKeepsItsHeading) {
   const PoseSequence standing{{restPose(person)}, 1.0 / 30};
   const SkeletonMap map = matchSkeletons(person, person);

@@ -38,7 +38,7 @@ void PlainSkeleton::mirror(Transform& local, Index joint) const {
   local.rotation.vec() = signs.prod() * signs.cwiseProduct(local.rotation.vec());
 }
 
-// What a parent's scale, against that at rest, does to the place of what hangs on it.
+// The effect of a parent's scale, against that at rest, on the positions of its children.
 void PlainSkeleton::takeScales(Pose& pose) const {
   constexpr double kScaled = 1e-3;  // ratio to the rest's, less 1; 1e-5 to 1e-2; less is rounding
   std::vector<double> factors;      // of each joint for its children

@@ -8,8 +8,8 @@
 namespace limber {
 
 // The same skeleton without negative scales, and with scales that are even in all directions. Joints keep their
-// numbers. Where scales are negative but even, every joint has the place in the world that it has in the original;
-// scales that differ between axes become their geometric mean, so that bones below them are a little off.
+// numbers. Where scales are negative but even, every joint has the same world position as in the original; scales that
+// differ between axes become their geometric mean, so that bones below them are a little off.
 class PlainSkeleton {
  public:
   explicit PlainSkeleton(const Skeleton& original);

@@ -75,8 +75,9 @@ Pose turnedAboutY(const Skeleton& skeleton, Pose pose, double radians) {
   return pose;
 }
 
-// Turned so that the body's left is +X, as files have it at rest: where up and ahead are not sure, readAnatomy goes by
-// that habit, which a frame under way does not keep. Which of both sides is left is surest where names agree with it.
+// Turned so that the body's left is +X, as files have it at rest: where up and ahead are uncertain, readAnatomy uses
+// that convention, which a frame within a motion does not keep. Which side is left is most certain where names agree
+// with it.
 Pose turnedAhead(const Skeleton& skeleton, const Pose& pose) {
   // Fraction of the left's length; 0.3 to 0.8; one who lies on a side stays as it is; set by hand.
   constexpr double kMinLevel = 0.5;

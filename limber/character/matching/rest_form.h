@@ -14,8 +14,8 @@ namespace limber {
 // others; what leads to where it begins, and from the root to the hips, does not count. Cost: one pass over the joints.
 bool hasForm(const Skeleton& skeleton, const Pose& pose);
 
-// What stands in for a rest pose without form when a body is read: the tallest (+Y up) of the motion's poses that have
-// one, turned about +Y to face +Z. None where the rest pose has a form, or no pose of the motion.
+// The pose that replaces a rest pose without form when a body is read: the tallest (+Y up) of the motion's poses that
+// have one, turned about +Y to face +Z. None where the rest pose has a form, or no pose of the motion.
 std::optional<Pose> poseWithForm(const Skeleton& skeleton, std::span<const Pose> motion);
 // The same of all clips, looked at evenly spaced moments.
 std::optional<Pose> poseWithForm(const Motion& motion);

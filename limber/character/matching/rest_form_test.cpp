@@ -33,7 +33,7 @@ TEST_F(RestForm, BonesOnOneLineHaveNone) {
   }
 }
 
-// On a root at the ground: the way from there to the hips is no limb.
+// On a root at the ground: the path from there to the hips is no limb.
 TEST_F(RestForm, ARootBelowTheHipsGivesNone) {
   const MovedSkeleton flat = withZeroedAxes(person, motion, false, Quat::Identity());
   Skeleton rooted;

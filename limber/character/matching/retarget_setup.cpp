@@ -13,14 +13,14 @@ namespace limber {
 
 namespace {
 
-// Hip heights; 0.03 to 0.15; a motion whose feet come this near to where they are in rest pose stands on the rest
-// pose's ground; set by hand (0.015 before).
+// Hip heights; 0.03 to 0.15; a motion whose feet come this near to their positions in rest pose has the rest pose's
+// ground; set by hand (0.015 before).
 constexpr double kSameGround = 0.08;
 // Hip heights over the origin; 0.3 to 0.9; from there on a rest pose does not stand on it; set on a swimmer's clip.
 constexpr double kFlies = 0.5;
 // Set by hand.
-constexpr double kStill = 0.4;         // hip heights a second; 0.2 to 0.7; a lowest foot joint slower than this stands
-constexpr double kFewStand = 0.05;     // fraction of frames; 0.01 to 0.2; below it the motion never stands (a run)
+constexpr double kStill = 0.4;         // hip heights a second; 0.2 to 0.7; a lowest foot joint slower than this rests
+constexpr double kFewStand = 0.05;     // fraction of frames; 0.01 to 0.2; below it the feet never rest (a run)
 constexpr double kBelowGround = 0.05;  // fraction of frames; 0 to 0.1; that may lie below the ground, for noise
 
 double lowest(const std::vector<Index>& joints, const std::vector<Vec3>& positions) {
@@ -110,7 +110,7 @@ double legHeight(const std::vector<AnimalLeg>& legs, const SkeletonMap& map, Map
   return sum / static_cast<double>(legs.size()) - lowest(matchedJoints(map, side), pose.positions);
 }
 
-// Which way others than people face; these tell it by their limbs.
+// The direction that bodies other than a person's face; their limbs say which.
 Axes axesOf(const Skeleton& skeleton, const SkeletonReading& reading, bool person) {
   if (person) return {};
   return reading.isOf(skeleton) ? reading.anatomy().axes : readAnatomy(skeleton).axes;
@@ -126,9 +126,10 @@ std::vector<Index> tailOf(const Anatomy& anatomy) {
   return tail ? tail->joints : std::vector<Index>();
 }
 
-// With the matched limbs of bodies of another kind as the motion has them in the mean: a person's arms hang, whatever
-// the rest pose, and a foreleg that follows one stands. Of twins the target is posed as that by turns alone: feet on
-// roots of their own, led elsewhere in that frame, would make the source's legs longer or shorter than its twin's.
+// With the matched limbs of bodies of another kind at their mean rotation over the motion: a person's arms hang,
+// whatever the rest pose, and a foreleg that follows one rests on the ground. A twin target takes that pose by
+// rotations alone: feet on roots of their own, moved elsewhere in that frame, would make the source's legs longer or
+// shorter than its twin's.
 Pose restOf(const Skeleton& source, std::span<const Pose> motion, const SkeletonMap& map) {
   Pose rest = uprightPose(source, motion, map, MapSide::kSource);
   if (map.twins) return turnedAlone(source, std::move(rest));
@@ -148,7 +149,7 @@ Pose restOf(const Skeleton& source, std::span<const Pose> motion, const Skeleton
   return rest;
 }
 
-// A map of the hips alone, or joints that all lie in one place, leave nothing to scale by.
+// A map of the hips alone, or joints that all lie at one position, leave nothing to scale by.
 void checkSize(double size, const char* whose, const SkeletonMap& map) {
   if (size > 0) return;
   throw KnownError(
@@ -213,8 +214,8 @@ RetargetSetup::RetargetSetup(const Skeleton& from, const Skeleton& to, SkeletonM
     const LowestHeights heights = lowestHeights(sourceKinematics, sourceNeutral, soles, sourceHipHeight, *motion);
     sourceGround = measuredGround(heights, restGround, sourceHipHeight);
   }
-  // Of skeletons that hang about the origin, people stand at the source's height, others, who go their way from rest,
-  // as far from there as the source.
+  // If the skeletons' rest poses are about the origin, a person is put at the source's height, and any other body,
+  // whose displacement is from rest, as far from there as the source.
   targetGround = lowest(groundJoints(map, MapSide::kTarget), targetNeutral.restPositions);
   // What rests in the air flies: its feet have no ground to keep to.
   if ((targetGround >= kFlies * targetHipHeight && !quadruped) || map.unlikeBodies) animalLegs.clear();

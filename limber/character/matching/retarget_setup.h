@@ -30,13 +30,13 @@ struct ContactEdit {
 enum class RootScale {
   kHipHeight,  // from the ground to the hips
   kLegLength,  // of upper and lower leg
-  kNone,       // the way stays as long as it is
+  kNone,       // the root's displacement is not scaled
 };
 
 struct RetargetOptions {
   RootScale rootScale = RootScale::kHipHeight;
-  // limb-ik: where a hand goes. 0: where its turned bones bring it; 1: where the source's hand is, scaled as the root's
-  // way is (Koerner's d).
+  // limb-ik: the goal of a hand. 0: where its turned bones bring it; 1: where the source's hand is, scaled as the
+  // root's displacement is (Koerner's d).
   double reach = 0;
   bool contacts = true;                        // limb-ik: keep planted feet, touching hands and arms outside the body
   std::vector<ContactEdit> contactEdits = {};  // of several for one moment the last one counts
@@ -45,20 +45,20 @@ struct RetargetOptions {
   // Height of the ground under the source, metres; none: measured from the motion where there is one, else from the
   // rest pose.
   std::optional<double> sourceGround;
-  // The character's rest pose stands on its ground, wherever that is, as models with a surface do. Else a person who
-  // hangs about the origin, as bare skeletons may, is put where the motion's ground is.
+  // The character's rest pose is on its ground, wherever that is, as models with a surface are. Else a person whose
+  // rest pose is about the origin, as in bare skeletons, is put where the motion's ground is.
   bool characterOnGround = false;
   std::shared_ptr<const BodySkin> skin = nullptr;  // the character's: arms stay outside it (ArmClearance)
 };
 
 // Immutable once made; the skeletons must outlive it, and have no negative scales (plain_skeleton.h). `motion`, if
-// given, is what will be retargeted: it tells where the ground is, and how the source stands where its rest pose does
-// not.
+// given, is the input of the retarget: it gives the ground, and a rest pose for the source where its own is not
+// upright.
 struct RetargetSetup {
   RetargetSetup(const Skeleton& source, const Skeleton& target, SkeletonMap map, const RetargetOptions& options,
                 const PoseSequence* motion = nullptr);
 
-  // Where the target's pelvis stands when the source's stands at `pelvis`, both in their person's space.
+  // The target's pelvis position when the source's is at `pelvis`, both in their person's space.
   Vec3 positionOf(const Vec3& pelvis) const;
 
   const Skeleton* source;
@@ -72,13 +72,13 @@ struct RetargetSetup {
   bool sameBody = false;
   bool quadruped =
       false;        // SkeletonMap::isQuadruped, of no twins; else joints are matched one by one, and all may move
-  Pose sourceRest;  // the rest pose, or what stands in for it (uprightPose)
+  Pose sourceRest;  // the rest pose, or the one that replaces it (uprightPose)
   Pose targetRest;  // the rest pose; of twins the pose in which it rests as the source does (poseAsTwin)
   NeutralPose sourceNeutral, targetNeutral;
   BodyKinematics sourceKinematics, targetKinematics;
-  // Target metres for a source metre of the root's way. Of others than people with legs: by where these begin.
+  // Target metres for a source metre of the root's displacement. Of others than people with legs: by where these begin.
   double scale = 1;
-  // The legs' share of the hips' height, over the source's: where ankles are high, bent legs lower the hips less.
+  // The legs' fraction of the hips' height, over the source's: where ankles are high, bent legs lower the hips less.
   double legFraction = 1;
   double sourceHipHeight = 1,
          targetHipHeight = 1;                 // of no people: mean height of the joints, or size of what lies flat

@@ -322,7 +322,7 @@ class Matcher {
   }
 
   // Not the end of a foot's bone, that never turns; nor where one foot is raised at rest, as in a file that begins in
-  // the middle of a step: how it stands is not known then.
+  // the middle of a step: its rest orientation is then unknown.
   bool toesTell(const Skeleton& skeleton, const BodyPieces& body, const LimbPieces& leg, std::size_t toes) const {
     // Body sizes; 0.003 to 0.015; measured: feet of shared bodies that stand differ by 0.002 at most, others by 0.02.
     constexpr double kRaised = 0.006;

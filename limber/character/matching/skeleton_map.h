@@ -17,7 +17,7 @@ enum class MatchedBy { kName, kShape, kFile };
 // A piece of the body that both skeletons have, with its joints in both, root to tip. Counts may differ: a trunk of
 // three joints moves one of five.
 struct JointMatch {
-  BodyPart part;  // of kind kOther: joints of one name, or of one place in equal trees; `piece` tells them apart
+  BodyPart part;  // of kind kOther: joints of one name, or of one position in equal trees, distinguished by `piece`
   std::vector<Index> source, target;
   double confidence = 1;  // below kDoubtful: worth a look
   MatchedBy by = MatchedBy::kName;

@@ -150,8 +150,8 @@ class TwinMatcher {
     return frame;
   }
 
-  // Children to the nearest of equal trees and bones. What hangs on a bone that points elsewhere is turned along with
-  // it: the fingers of an arm that rests otherwise would else change places.
+  // Children to the nearest of equal trees and bones. Children of a bone that points elsewhere are turned along with
+  // it: the fingers of an arm in another rest pose would else be swapped.
   bool layOn(Twins& twins) const {
     if (!pairUp(sourceTree_.roots(), targetTree_.roots(), std::nullopt, std::nullopt, twins.turn, twins)) return false;
     std::vector<Quat> turns(target_.jointCount(), twins.turn);
@@ -335,7 +335,7 @@ Pose poseAsTwin(const Skeleton& source, const Pose& sourcePose, const Skeleton& 
     collect(tree.subtree(joint));
     lies[joint] = fits(turns[joint]);
     if (lies[joint]) continue;
-    // From how its parent turns on, so that what no place tells stays as it is.
+    // Starts from its parent's rotation, so that what no position determines stays as it is.
     const auto turnedOn = [&] {
       std::vector<Vec3> carried;
       for (const Vec3& position : is) carried.push_back(turns[joint] * position);

@@ -17,8 +17,8 @@ struct Twins {
 };
 
 // Where both trees are the same and bones are equally long but for one scale (within 2 %), joints may be turned: of all
-// ways to lay one tree on the other the one that brings joints nearest, then the one with most names, or declared
-// bones, in common. Nothing otherwise. Cost: joints times the 28 turns that are tried.
+// mappings of one tree to the other the one that brings joints nearest, then the one with most names, or declared
+// bones, in common. Nothing otherwise. Cost: joints times the 28 rotations that are tried.
 std::optional<Twins> matchTwins(const Skeleton& source, const Skeleton& target);
 
 // With every joint where its parent carries it at rest: what moves by itself, such as a foot on a root of its own, says

@@ -124,7 +124,7 @@ TEST(TwinMatch, NothingAndJointsInOnePlaceAreNone) {
   EXPECT_FALSE(matchTwins(original(), folded));
 }
 
-// Every joint is where the twin's is, but for the root's place.
+// Every joint is where the twin's is, but for the root's position.
 void expectParallel(const Skeleton& source, const Pose& sourcePose, const Skeleton& target, const Twins& twins,
                     const Pose& pose) {
   const std::vector<Affine> from = poseGlobals(source, sourcePose), to = poseGlobals(target, pose);
@@ -183,7 +183,7 @@ TEST(TwinMatch, FingersOfALimbThatRestsOtherwiseKeepTheirPlaces) {
   for (Index j = 0; j < target.jointCount(); ++j) EXPECT_EQ(twins->sourceOf[j], j) << source.joints[j].name;
 }
 
-// Joints on one line tell nothing of how it is twisted: the shortest way.
+// Joints on one line do not say how it is twisted: the shortest rotation.
 TEST(TwinMatch, AStraightLimbIsNotTwisted) {
   Skeleton source;
   for (Index i = 0; i < 5; ++i) {

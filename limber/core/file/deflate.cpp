@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kWindow = 32768, kShortest = 4, kLongest = 258;
 constexpr std::size_t kBlockTokens = 32768;
-constexpr int kMaxTries = 16;  // places looked at for one match
+constexpr int kMaxTries = 16;  // earlier positions tried for one match
 constexpr std::size_t kLiterals = 286, kDistances = 30, kCodeLengths = 19, kEndOfBlock = 256;
 constexpr std::uint32_t kNowhere = 0xffffffff;
 
@@ -137,7 +137,7 @@ class Deflater {
     return (four * 2654435761u) >> 17;
   }
 
-  // The place becomes known to later ones; returns the one before it that began alike.
+  // Makes the position known to later ones; returns the one before it that began alike.
   std::uint32_t remember(std::size_t at) {
     if (at + kShortest > data_.size()) return kNowhere;
     std::uint32_t& head = head_[hashAt(at)];
@@ -152,7 +152,7 @@ class Deflater {
     return length;
   }
 
-  // Returns how many bytes it stands for.
+  // Returns how many bytes the token covers.
   std::size_t addToken(std::size_t at) {
     std::size_t length = 1, distance = 0;
     std::uint32_t from = remember(at);
@@ -249,7 +249,7 @@ class Deflater {
 
   ByteSpan data_;
   Bytes out_;
-  std::vector<std::uint32_t> head_, previous_;  // by hash; by place in the window
+  std::vector<std::uint32_t> head_, previous_;  // by hash; by position in the window
   std::vector<Token> tokens_;
   std::uint64_t bits_ = 0;
   int bitCount_ = 0;

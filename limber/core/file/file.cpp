@@ -82,7 +82,7 @@ void writeStraight(const OutputFile& file) {
   closeStream(std::move(stream), file.path);
 }
 
-// A file under a temporary name beside its place; gone with this object unless published.
+// A file under a temporary name beside its final path; gone with this object unless published.
 class PendingFile {
  public:
   explicit PendingFile(fs::path location) : path_(std::move(location)) {}
@@ -110,7 +110,7 @@ class PendingFile {
   }
 
  private:
-  // Under the first name that nobody has: another run may be writing to the same place.
+  // Opens the file under the first unused name: another run may be writing to the same path.
   File openBeside() {
     constexpr int kMaxNames = 1000;
     for (int i = 0; i < kMaxNames; ++i) {

@@ -28,10 +28,10 @@ struct OutputFile {
   std::vector<ByteSpan> further = {};  // behind them: what need not be in memory as one piece
 };
 
-// Writes several files as one: each beside its place under a temporary name of its own, and only when all are complete
-// and closed are they renamed, in the order given. Whatever fails until then leaves every place as it was. Should the
-// system refuse one of the renames themselves, those before it have happened; the temporary files are gone in any case.
-// So a file that refers to others goes last.
+// Writes several files as one: each is first written beside its final path, under a temporary name of its own, and only
+// when all are complete and closed are they renamed, in the order given. A failure before that leaves every path as it
+// was. Should the system refuse one of the renames themselves, those before it have happened; the temporary files are
+// gone in any case. So a file that refers to others goes last.
 //
 // A link is followed and stays. Standard output, and what is there and no plain file (a device, a pipe), is written
 // straight into, before the renames. Missing folders are not made. Throws Error kFile.

@@ -13,8 +13,8 @@ namespace limber {
 // can go again, so that a file may be as large as memory. Anything else is read as readFile does: small files, pipes,
 // standard input ("-"). Throws as readFile does.
 //
-// A mapped file must not be cut short by somebody else meanwhile: the system ends a program that looks behind the new
-// end. writeFile puts a new file in the place of the old one and does no harm.
+// Nobody may truncate a mapped file meanwhile: the system ends a program that reads past the new end. writeFile
+// replaces the old file with a new one and does no harm.
 class FileView {
  public:
   static constexpr std::size_t kMapFrom = std::size_t{16} << 20;  // below that a copy costs some 5 ms

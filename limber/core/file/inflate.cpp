@@ -1,6 +1,6 @@
-// Our own in place of zlib, because a page has no zlib: its DecompressionStream is asynchronous, a reader is not, and a
-// decoder of JavaScript handed in would have to be fetched before anyone knows that the file is deflated. These lines
-// are one code path everywhere, and no library more to install.
+// Our own decoder instead of zlib, because a page has no zlib: its DecompressionStream is asynchronous, a reader is
+// not, and a JavaScript decoder passed in would have to be fetched before anyone knows that the file is deflated. This
+// is one code path everywhere, and one library less to install.
 #include "limber/core/file/inflate.h"
 
 #include <algorithm>

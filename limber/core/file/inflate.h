@@ -11,9 +11,9 @@ namespace limber {
 // The most bytes that one byte of deflated data can become: a match of 258 bytes takes two bits.
 inline constexpr std::size_t kMaxInflatedPerByte = 1032;
 
-// Fills `out` with what the data hold. Throws Error kBadData where they are broken or cut off, or hold more or fewer
-// bytes than `out`; what stands behind them is not looked at. Allocates nothing. Cost: linear, some 150 megabytes of
-// `out` a second.
+// Fills `out` with the decompressed data. Throws Error kBadData where the data are broken or cut off, or contain more
+// or fewer bytes than `out`; bytes after the end of the stream are ignored. Allocates nothing. Cost: linear, some 150
+// megabytes of `out` a second.
 void inflate(ByteSpan packed, std::span<std::uint8_t> out);
 
 // The same of a zlib stream; throws, too, where it refers to a preset dictionary or does not have the checksum that it

@@ -37,7 +37,7 @@ inline constexpr ReadBound kFbxArrays = {16 * kMega, 32};
 inline constexpr ReadBound kRepeatedFiles = {64 * kMega, 0};
 // Assimp's process, the larger of the two. A text of a megabyte takes it 6 to 12 megabytes.
 inline constexpr ReadBound kAssimp = {224 * kMega, 14};
-// And that much more for each byte of a picture beside the file, which is copied on its way.
+// And that much more for each byte of a picture beside the file, since the picture is copied while it is read.
 inline constexpr std::uint64_t kAssimpPicture = 4;
 
 // Elements of an accessor without data, which are zeros; the larger of the two, for each byte of the longest buffer.

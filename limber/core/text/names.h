@@ -12,7 +12,7 @@ namespace limber {
 // A to Z become a to z; every other byte stays as it is.
 std::string lowerCase(std::string_view text);
 
-// What stands behind the last dot of a file's name, with the dot and in lower case: ".glb". Empty where there is none.
+// The file name's last dot and what follows it, in lower case: ".glb". Empty where there is no dot.
 std::string lowerExtension(const std::filesystem::path& path);
 
 // The entry of a table whose member `name` is `name`. Throws Error kBadArgument: "no <what> is called '<name>'", with

@@ -5,10 +5,10 @@
 
 namespace limber {
 
-// The decimal number at `at`, which then stands behind it; nullopt, and `at` where it was, where there is none. Reads
-// "12", "-.5", "+3.", "1e-3", also "nan", "inf" and "infinity" in any case; no blanks before it, no hexadecimal. At
-// most 19 digits count, the others only for the size: the result is the nearest double for numbers of up to 15 digits
-// with exponents within 22, within an ulp or two otherwise. Beyond the range of a double it is infinite or 0.
+// The decimal number at `at`, which is moved past it; nullopt, and `at` unchanged, where there is none. Reads "12",
+// "-.5", "+3.", "1e-3", also "nan", "inf" and "infinity" in any case; no blanks before it, no hexadecimal. At most 19
+// digits count, the others only for the size: the result is the nearest double for numbers of up to 15 digits with
+// exponents within 22, within an ulp or two otherwise. Beyond the range of a double it is infinite or 0.
 //
 // commaIsPoint  also "1,5" is one number, if a digit follows the comma and no point has come yet; set to true where
 //               that was used, else left alone. Null: a comma ends the number.

@@ -1,4 +1,4 @@
-// Words out of files on their way to a terminal.
+// Prepares text from files for printing on a terminal.
 #pragma once
 
 #include <cstddef>

@@ -18,7 +18,8 @@ constexpr double kUprightSlope = 4;
 // That are looked at: more of a long recording tell nothing new, and a file may have joints without channels.
 constexpr std::size_t kMaxFrames = 2000, kMaxPositions = 4000000;
 constexpr double kAbout = 0.7;  // cosine of 45 degrees, about
-// Fractions of the frames. A recording that stands in a tenth of them does not have its other axis up.
+// Fractions of the frames. A recording that is upright along one axis in a tenth of them does not have its other axis
+// up.
 constexpr double kMinAlongOther = 0.5, kMaxAlongExpected = 0.1, kNearlyAll = 0.98;
 // In FramePostures::size. Of walks, runs, jumps and dances of the shared motions the deviation of the lowest point is
 // 0.002 to 0.09 along up and 0.02 to 0.9 along the level axes.

@@ -21,9 +21,9 @@ struct BvhEnds {
 BvhEnds namedEnds(std::span<const BvhJoint> joints);
 
 // By the tree alone, whatever its joints are called and however they rest. Legs and arms are pairs of long chains of
-// equal lengths, each pair on one joint: the legs' joint is the one next to the root along the bones, that of the arms
-// the one farthest from it, which stands for the head. Unknown where there are no two such pairs, or the legs are
-// shorter than the arms: the root of such a tree may lie at its upper end.
+// equal lengths, each pair attached to one joint: the legs' joint is the one next to the root along the bones, the
+// arms' joint is the one farthest from it, which represents the head. Unknown where there are no two such pairs, or the
+// legs are shorter than the arms: the root of such a tree may lie at its upper end.
 BvhEnds endsOfTree(std::span<const BvhJoint> joints);
 
 // By names, and by the tree where these do not tell both ends.

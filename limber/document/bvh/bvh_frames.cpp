@@ -85,7 +85,7 @@ BvhFrames::BvhFrames(std::span<const BvhJoint> joints) {
 
 void BvhFrames::addRotation(Tracks& tracks, const Quat& rotation) {
   Eigen::Quaternionf value(rotation.cast<float>());
-  // q and -q are one rotation, but not the same way there.
+  // q and -q are the same rotation, but interpolation to them takes different paths.
   if (!tracks.rotationValues.empty() && tracks.rotationValues.back().coeffs().dot(value.coeffs()) < 0) {
     value.coeffs() = -value.coeffs();
   }

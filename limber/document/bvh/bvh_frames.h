@@ -42,7 +42,7 @@ class BvhFrames {
 
   std::vector<Tracks> moving_;
   std::size_t count_ = 0;
-  double squaresOfAbsolute_ = 0, squaresOfRelative_ = 0;  // of the distances from the offsets, either way
+  double squaresOfAbsolute_ = 0, squaresOfRelative_ = 0;  // of the distances from the offsets, for both interpretations
 };
 
 }  // namespace limber

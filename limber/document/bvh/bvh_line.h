@@ -59,7 +59,7 @@ class BvhLine {
     return value;
   }
 
-  // Was a number written with a comma in place of the point?
+  // Was a number written with a comma as its decimal point?
   bool decimalComma() const { return decimalComma_; }
 
   Error error(const std::string& what, const std::string& remedy = {}) const {

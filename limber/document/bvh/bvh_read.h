@@ -18,8 +18,8 @@ struct BvhOptions {
   // Of the frames. None: Y or Z is inferred. Expected is Z where in the rest pose the joints named "head" lie above
   // those named "foot", "toe" or "ankle" along Z, and hardly along Y, else Y; the frames overrule that (upOfFrames).
   std::optional<UpAxis> up;
-  // Of the rest pose. None: Y where it stands along Y clearly; else that of the frames or, where they are inferred to
-  // be Y, the expected one.
+  // Of the rest pose. None: Y where the rest pose is clearly upright along Y; else that of the frames or, where they
+  // are inferred to be Y, the expected one.
   std::optional<UpAxis> restUp = std::nullopt;
 };
 
@@ -32,10 +32,11 @@ struct BvhOptions {
 // if they were added to them (programs differ; warning "relative-positions").
 //
 // Accepted: any blanks and line ends, decimal commas, several roots, rotations that are constant (one key). Warnings:
-// "converted-axes", "maybe-z-up" and "maybe-y-up" (a body that lies all the time, or stands along another axis),
+// "converted-axes", "maybe-z-up" and "maybe-y-up" (a body that lies all the time, or is upright along another axis),
 // "upside-down" (the head is below the feet in all frames), "frame-count" (more or fewer frames than announced),
-// "cut-frame" (the last row is incomplete and left out), "bad-numbers" (not finite, or too large: the frame before
-// stands in), "frame-time" (not positive: 1/30 s), "no-motion", "duplicate-names", "decimal-commas", "trailing-text".
+// "cut-frame" (the last row is incomplete and left out), "bad-numbers" (not finite, or too large: replaced by the
+// previous frame), "frame-time" (not positive: 1/30 s), "no-motion", "duplicate-names", "decimal-commas",
+// "trailing-text".
 //
 // Throws Error kBadData with file and line ("walk.bvh: line 187") for everything else, kLimit beyond 2^22 frames,
 // kBadArgument for a unit that is not positive. Time is linear in the file; memory that of the result and one line.

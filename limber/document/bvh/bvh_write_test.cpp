@@ -202,7 +202,7 @@ TEST(WriteBvh, RefusesWhatABvhCannotSay) {
   EXPECT_THROW(writeBvh(motion), Error);
   EXPECT_THROW(writeBvh({}), Error);
 
-  Motion far = randomMotion(1, false);  // each joint's place is a float, but not how far two are apart
+  Motion far = randomMotion(1, false);  // each joint's position fits a float, but the distance between two does not
   far.skeleton.joints[0].rest.translation = Vec3(3e38, 0, 0);
   far.skeleton.joints[1].rest.translation = Vec3(3e38, 0, 0);
   EXPECT_THROW(writeBvh(far, {0, 1e-3, {}}), Error);

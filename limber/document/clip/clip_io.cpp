@@ -330,7 +330,7 @@ class ClipReader {
   // The node's movement in the world.
   NodeTracks sampled(Index node, std::vector<float> times) {
     struct Link {
-      const NodeTracks* tracks = nullptr;  // null: it stands still
+      const NodeTracks* tracks = nullptr;  // null: it is not animated
       Transform rest;
     };
     const std::vector<Index> chain = chainOf(node);

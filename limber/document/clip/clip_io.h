@@ -13,9 +13,9 @@ namespace limber {
 // One clip for each animation of the document (in order, with its name, possibly empty and not unique), over the rest
 // pose of `skeleton`, in the world of the default scene. Each has passed checkClip.
 //
-// A joint without a channel stands as its node does: where that is not its rest pose, the clip has a track of one key.
-// Movement of nodes above a root joint is part of that joint's tracks; it is then sampled at all keys and 60 times a
-// second between, with the warning "moving-parents" unless their channels repeat their own transforms. Keys that are
+// A joint without a channel has the transform of its node: where that is not its rest pose, the clip has a track of one
+// key. Movement of nodes above a root joint is part of that joint's tracks; it is then sampled at all keys and 60 times
+// a second between, with the warning "moving-parents" unless their channels repeat their own transforms. Keys that are
 // not finite or not later than the one before, and rotations of length 0, are left out (warning "invalid-keys"). Morph
 // weights and movement of other nodes are not part of a clip. Where a node's scale mirrors, tracks have rotations and
 // scales as decompose() finds them, which the rest pose has, too.
@@ -34,8 +34,8 @@ std::vector<Clip> readClips(const Asset& asset, const AssetSkeleton& skeleton, s
 // what is no transform.
 bool repeatsItsNode(const Asset& asset, const gltf::Animation& animation, const gltf::AnimationChannel& channel);
 
-// Channels may share a sampler, and whoever reads them has its keys as often: throws the second of readClips' errors
-// kLimit, so that a few kilobytes of channels do not ask for gigabytes.
+// Channels may share a sampler, and a reader then has its keys once for each: throws the second kLimit error of
+// readClips, so that a few kilobytes of channels do not ask for gigabytes.
 void checkKeySharing(const Asset& asset, std::span<const Index> animations);
 
 struct ClipWriteOptions {
@@ -48,11 +48,11 @@ struct ClipWriteOptions {
 // transform as translation, rotation and scale. Clips without a name become "clip"; names that are there already get a
 // number behind them. `skeleton` is readSkeleton(asset). Returns the names as they are written.
 //
-// A joint without a track is kept in its rest pose, also where its node stands otherwise. Values are written as they
-// are, interpolation too; tracks of one value have one key, and none where the node has that value. Tracks of equal
-// times share one accessor. Of a skeleton without joints the animations have no channel. Throws Error kBadArgument
-// where the skeleton is not of that asset, kBadData as checkClip does, with the clip's name, and where a root stands
-// below a node without an inverse (a scale of 0).
+// A joint without a track is kept in its rest pose, even where its node has another transform. Values are written as
+// they are, interpolation too; tracks of one value have one key, and none where the node has that value. Tracks of
+// equal times share one accessor. For a skeleton without joints the animations have no channel. Throws Error
+// kBadArgument where the skeleton is not of that asset, kBadData as checkClip does, with the clip's name, and where a
+// root is below a node without an inverse (a scale of 0).
 std::vector<std::string> addClips(Asset& asset, const AssetSkeleton& skeleton, std::span<const Clip> clips,
                                   const ClipWriteOptions& options = {});
 

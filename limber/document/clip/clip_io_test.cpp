@@ -322,7 +322,7 @@ TEST(ClipIo, CollapsesWhatStandsStillAndKeepsTheDuration) {
 
   motion.clips[0].translations.push_back({3, Interpolation::kLinear, {0, 2}, {Vec3f::Zero(), Vec3f::Ones()}});
   const Asset moving = motionAsset(motion);
-  EXPECT_EQ(moving.document.animations[0].channels.size(), 2u);  // what stands as the node does is left out
+  EXPECT_EQ(moving.document.animations[0].channels.size(), 2u);  // tracks that repeat the node's transform are left out
 
   motion.clips = {Clip()};
   const Asset empty = motionAsset(motion);
@@ -342,7 +342,7 @@ TEST(ClipIo, StandsAsTheNodesStandWhereNoChannelIs) {
   for (std::size_t c = 0; c < clips.size(); ++c) {
     EXPECT_LT(largestError(asset, skeleton, clips[c], asset.document.animations[c], 11), 1e-5);
   }
-  // Written again, a joint without a track goes to its rest pose and not where the node stands.
+  // Written again, a joint without a track goes to its rest pose, not to its node's transform.
   asset.document.animations.clear();
   addClips(asset, skeleton, motion.clips);
   for (std::size_t c = 0; c < clips.size(); ++c) {

@@ -12,7 +12,7 @@ namespace limber {
 
 struct ClipMoment {
   std::string clip;    // as findClip reads it; empty: the first
-  double seconds = 0;  // before its start and after its end the clip stands still
+  double seconds = 0;  // clamped to the clip's start and end
 };
 
 // How the joints stand then, those that the clip does not move as the file's nodes do. Of `skeleton`,

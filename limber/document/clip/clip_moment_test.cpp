@@ -48,7 +48,7 @@ Asset bendingArm() {
 
 TEST(ClipMoment, MeshAndJointsStandAsTheClipSays) {
   Asset asset = bendingArm();
-  standAt(asset, {"bend", 1});  // half of the way: 45 degrees
+  standAt(asset, {"bend", 1});  // halfway: 45 degrees
   const double half = std::sqrt(0.5);
   const std::vector<Vec3f> positions = collectGeometry(asset).positions;
   EXPECT_LT((positions[1] - Vec3f(0.5f, 0, 0)).norm(), 1e-6);

@@ -9,8 +9,8 @@
 
 namespace limber {
 
-// The clip of that name: the first that is called so in full, else the first behind whose last '|' it stands (Blender's
-// exporters put the armature's name before). Throws Error kBadArgument that lists the names, with `where`.
+// The clip of that name: the first whose full name it is, else the first whose name ends with it after the last '|'
+// (Blender's exporters prefix the armature's name). Throws Error kBadArgument that lists the names, with `where`.
 Index clipNamed(std::span<const std::string> names, std::string_view name, std::string_view where);
 
 }  // namespace limber

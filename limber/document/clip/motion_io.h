@@ -29,11 +29,11 @@ Motion readMotion(ByteSpan bytes, std::string_view name, const MotionOptions& op
 Motion motionOf(const Asset& asset);
 Motion motionOf(const Asset& asset, const AssetSkeleton& skeleton);
 
-// What of the document moves: of a motion for VRMs (VRMC_vrm_animation) its humanoid bones, called by VRM's names, with
-// the nodes between them (its expressions and its gaze are not read); else readSkeleton where it has a skin; else one
-// joint for each node that is animated, stands between such, or hangs on one without showing anything itself (the end
-// of a bone). Rest pose is then as the nodes stand. Throws Error kBadData where nothing is animated either, as in a
-// model that moves by blend shapes alone.
+// The skeleton of what moves in the document. For a VRM motion (VRMC_vrm_animation), its humanoid bones, called by
+// VRM's names, with the nodes between them (its expressions and its gaze are not read); else readSkeleton where it has
+// a skin; else one joint for each node that is animated, lies between animated nodes, or is a child of one without
+// showing anything itself (the end of a bone). The rest pose is then that of the nodes. Throws Error kBadData where
+// nothing is animated either, as in a model that moves by blend shapes alone.
 AssetSkeleton animatedSkeleton(const Asset& asset);
 
 // The same, without joints there.

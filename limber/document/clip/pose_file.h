@@ -1,4 +1,4 @@
-// A pose as a file (.pose.json), to keep and to share.
+// A pose as a file (.pose.json), to keep and to exchange.
 #pragma once
 
 #include <string>

@@ -25,9 +25,9 @@ struct FbxExport {
 };
 
 // FBX 7.4 of what the default scene shows: the nodes by their names and hierarchy with Lcl Translation, Rotation (XYZ)
-// and Scaling, joints as limbs; meshes with all layers, materials by polygon, embedded pictures; skins with the places
-// of joint and mesh in bind pose; a BindPose; blend shapes; each clip an AnimationStack (writeFbxClips says how true
-// its curves are). Values of a document's own precision. Same document, same bytes.
+// and Scaling, joints as limbs; meshes with all layers, materials by polygon, embedded pictures; skins with the
+// bind-pose transforms of joint and mesh; a BindPose; blend shapes; each clip an AnimationStack (see writeFbxClips for
+// the accuracy of its curves). Values are in the document's own precision. Same document, same bytes.
 //
 // Throws Error kBadData as collectGeometry does, kBadArgument that lists the clips there are, kLimit above 4 GB.
 // Cost: O(#vertices + #keys).

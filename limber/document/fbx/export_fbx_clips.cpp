@@ -175,7 +175,7 @@ class FbxClipWriter {
     }
   }
 
-  // One component of keys, a single key where it stands still.
+  // One component of keys; a single key where it is constant.
   void writeCurve(const FbxKeys& keys, int component, FbxId node, const char* property) {
     std::vector<std::int64_t> times;
     std::vector<float> values;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kMaxFbxHalvings = 8;       // halvings between two keys
 constexpr double kFbxBeforeStep = 1e-4;  // seconds
-constexpr double kMaxDegrees = 90;       // between two keys: readers that blend rotations go the same way round
+constexpr double kMaxDegrees = 90;       // between two keys: readers that blend rotations take the same path
 
 // Adds keys to a list, each after the one before.
 template <typename ValueAt, typename IsStraight>

@@ -337,7 +337,7 @@ std::vector<FbxCluster> clustersOf(const Asset& asset, const gltf::Mesh& mesh, c
   return clusters;
 }
 
-// Where what holds a joint's skeleton stands in bind pose, in the file's space.
+// The bind-pose transform, in the file's space, of the model that a joint's skeleton is a child of.
 Affine armatureWorld(const FbxScenePlan& scene, std::size_t joint, const FbxSpace& space) {
   std::optional<std::size_t> model = joint;
   while (model && scene.models[*model].kind == FbxModelKind::kLimb) model = scene.models[*model].parent;
@@ -378,7 +378,7 @@ void writeFbxSkin(const Asset& asset, const FbxScenePlan& scene, const FbxModelP
     const Affine transform = link.inverse(Eigen::Affine) * space.world(model.bindWorld);
     addRecord(made.record, "Transform", {fbxMatrix(transform)});
     addRecord(made.record, "TransformLink", {fbxMatrix(link)});
-    // Blender places the mesh by it.
+    // Blender positions the mesh by it.
     addRecord(made.record, "TransformAssociateModel", {fbxMatrix(armatureWorld(scene, *joint, space))});
     objects.connect(made.id, skinId);
     objects.connect(models[*joint], made.id);

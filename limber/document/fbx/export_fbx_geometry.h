@@ -26,8 +26,8 @@ struct FbxGeometry {
 FbxGeometry writeFbxGeometry(const Asset& asset, Index mesh, Index node, const FbxSpace& space,
                              FbxObjectWriter& objects);
 
-// Writes the skin of a model: a cluster for each joint, with its place and the mesh's in bind pose. `models` are the
-// objects of the scene's.
+// Writes the skin of a model: a cluster for each joint, with the bind-pose transforms of the joint and the mesh.
+// `models` are the objects of the scene's models.
 void writeFbxSkin(const Asset& asset, const FbxScenePlan& scene, const FbxModelPlan& model, const FbxGeometry& geometry,
                   const std::vector<FbxId>& models, const FbxSpace& space, FbxObjectWriter& objects);
 

@@ -28,7 +28,7 @@ class FbxPropertyWriter {
   void choice(std::string_view name, int value);
   void number(std::string_view name, double value, std::string_view flags = "A");
   void color(std::string_view name, const Vec3& value);
-  void vector(std::string_view name, const Vec3& value);      // that stands still
+  void vector(std::string_view name, const Vec3& value);      // not animated
   void animatable(std::string_view name, const Vec3& value);  // "Lcl Translation", ...: the type is the name
   void time(std::string_view name, std::int64_t value);
 
@@ -48,7 +48,7 @@ class FbxObjectWriter {
     FbxId id;
     FbxNode& record;  // holds until the next one is made
   };
-  // `type` is the record's name ("Model"), `objectClass` stands behind the name, `kind` is the third value
+  // `type` is the record's name ("Model"), `objectClass` is appended to the name, `kind` is the third value
   // ("LimbNode").
   Made make(std::string_view type, std::string_view name, std::string_view objectClass, std::string_view kind);
 

@@ -33,10 +33,11 @@ struct FbxScenePlan {
   Warnings warnings;
 };
 
-// The nodes of the default scene, by their names and hierarchy. Joints (of skins, and what stands between; of a
-// document without meshes, whatever moves) are limbs; a node that shows a mesh is that mesh, but a joint, one of GPU
-// instances or of a skin with nodes below hands it to models below it. glTF gives no heed to the transform of a skinned
-// mesh's node: the model stands where the mesh was bound, at the top of the scene where what is above the node moves.
+// The nodes of the default scene, by their names and hierarchy. Joints (of skins, and the nodes between them; in a
+// document without meshes, whatever moves) are limbs. A node that shows a mesh becomes that mesh, but a joint, a node
+// of GPU instances or a skinned node with children passes it to models below it. glTF ignores the transform of a
+// skinned mesh's node: the model is where the mesh was bound, at the top of the scene where what is above the node
+// moves.
 FbxScenePlan readFbxScene(const Asset& asset);
 
 }  // namespace limber

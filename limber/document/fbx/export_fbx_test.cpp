@@ -152,7 +152,7 @@ TEST(EncodeFbx, AModelWithEverything) {
   EXPECT_EQ(std::get<Bytes>(video.find("Content")->values[0]), testing::pngBytes());
 }
 
-// Places of all vertices by the clusters, at rest and at a moment of the clip.
+// Positions of all vertices by the clusters, at rest and at one time of the clip.
 TEST(EncodeFbx, ClustersPutTheVerticesWhereLimberHasThem) {
   Asset asset = everything();
   const FbxFileView file(asset);
@@ -242,7 +242,7 @@ TEST(EncodeFbx, PrimitivesBecomeOneGeometryWithMaterialNumbers) {
   scene.asset().document.materials[1].name = "b";
   const FbxFileView file(scene.build());
   const FbxNode& surface = file.object("Geometry pieces");
-  EXPECT_EQ(FbxFileView::array<double>(surface, "Vertices").size(), 3u * 8);  // two share theirs
+  EXPECT_EQ(FbxFileView::array<double>(surface, "Vertices").size(), 3u * 8);  // two primitives share vertices
   EXPECT_THAT(FbxFileView::array<std::int32_t>(*surface.find("LayerElementMaterial"), "Materials"),
               ElementsAre(0, 0, 0, 0, 1, 1, 1, 1, 0));
   const std::vector<const FbxNode*> below = file.below(file.object("Model thing"));
@@ -281,7 +281,7 @@ TEST(EncodeFbx, AJointsMeshHangsBelowIt) {
   EXPECT_TRUE(file.world(file.object("Model head_mesh")).translation().isApprox(Vec3(0, 100, 0), 1e-9));
 }
 
-// glTF gives no heed to where the node of a skinned mesh stands; FBX does.
+// glTF ignores the transform of a skinned mesh's node; FBX does not.
 TEST(EncodeFbx, ASkinnedMeshStandsWhereItWasBound) {
   SceneBuilder scene;
   const Index mesh = scene.addTetrahedron();

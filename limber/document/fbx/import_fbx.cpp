@@ -101,7 +101,7 @@ class FbxConverter {
     }
   }
 
-  // A leaf that says nothing once its skinned mesh stands on its own.
+  // A leaf that serves no purpose once its skinned mesh is a node of its own.
   bool isSuperfluous(Index model) const {
     return hasMesh_.count(model) > 0 && hasRigidMesh_.count(model) == 0 && joints_.count(model) == 0 &&
            models_.childrenOf(model).empty();

@@ -90,7 +90,7 @@ class TrackSampler {
       reach = std::max({reach, (here.col(k) - here.col(0)).norm(), kMinMove * here.col(k).norm()});
     }
     tolerance_ = isRotation_ ? kTolerance : kTolerance * reach;
-    // Whether it stands still between all keys and jumps at some.
+    // Whether it is constant between all keys and jumps at some.
     bool steps = false, isConstant = true;
     for (std::size_t k = 0; k + 1 < keys.size(); ++k) {
       const auto from = static_cast<Eigen::Index>(k), to = from + 1;
@@ -106,7 +106,7 @@ class TrackSampler {
       if (k > 0 && track.interpolation == Interpolation::kLinear) {
         const bool isBaked = keys[k] - keys[k - 1] <= kShortSpan;
         addBetween(track, {keys[k - 1], keys[k]}, here.col(column - 1), before, isBaked ? 0 : kMaxHalvings);
-        // One tick before: as times in float this may be the same moment, which the next float down then stands for.
+        // One tick before: as floats the two times may be equal; the next float down then represents this one.
         if (before != row && keys[k] - 1 > keys[k - 1]) add(track, keys[k] - 1, before);
       }
       add(track, keys[k], row);
@@ -151,7 +151,7 @@ class TrackSampler {
   double tolerance_ = 0;
 };
 
-// q and -q are one rotation, but not the same way there.
+// q and -q are the same rotation, but interpolation to them takes different paths.
 void keepNearSide(FbxTrack& track) {
   for (std::size_t k = 1; k < track.rows.size(); ++k) {
     if (track.rows[k].dot(track.rows[k - 1]) < 0) track.rows[k] = -track.rows[k];
@@ -207,7 +207,7 @@ class KeyTicks {
   std::set<std::int64_t> others_;
 };
 
-// The keys within a clip, and its ends where it cuts a curve; of one that stands still its ends in any case.
+// The keys within a clip, and its ends where it cuts a curve; of a constant one always its ends.
 struct ClipRange {
   std::int64_t start = 0, stop = 0;
   bool isStill = false;

@@ -47,12 +47,12 @@ class FbxAnimations {
   // nodeOf  #models, node of the document; none for what the document lacks
   // scale   from the file's units to metres
   //
-  // A clip begins where its stack does (LocalStart) and ends with its last key or its stack; one whose curves stand
-  // still ends with its stack. Values are linear between keys: where the curves, or the turning by Euler angles, run
-  // otherwise, keys are put between theirs, until what is shown differs by no more than a ten thousandth of a radian
-  // (or of what a track moves through), though none closer together than 1/48 s. What only steps becomes a track of
-  // steps; a step among others two keys one after the other. What a clip holds elsewhere than the rest, without a
-  // curve, gets one key where the clip begins.
+  // A clip begins where its stack does (LocalStart) and ends with its last key or its stack; one whose curves are
+  // constant ends with its stack. Values are linear between keys: where the curves, or the rotation by Euler angles,
+  // run otherwise, keys are added between theirs, until the result differs by no more than a ten thousandth of a radian
+  // (or of the range that a track moves through), though none closer together than 1/48 s. A track that only steps
+  // becomes a track of steps; a step among other keys becomes two keys in succession. A property that a clip sets to
+  // another value than its rest, without a curve, gets one key where the clip begins.
   //
   // Throws Error kLimit, which names the clip, where tracks that share curves would have more numbers than 16 for each
   // key of the file and 4 million.

@@ -9,8 +9,8 @@
 
 namespace limber {
 
-// One value of a layer may stand for millions of corners, and one geometry for thousands of models: numbers of vertices
-// are held to a multiple of the file's size. Most files hold more of them than are made.
+// One value of a layer may apply to millions of corners, and one geometry to thousands of models: numbers of vertices
+// are limited to a multiple of the file's size. Most files store more of them than are made.
 class FbxBudget {
  public:
   explicit FbxBudget(std::size_t fileSize) : left_(read_bounds::kFbxNumbers.of(fileSize)) {}

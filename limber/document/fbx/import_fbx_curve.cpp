@@ -119,7 +119,7 @@ void setAutomaticSlopes(std::vector<FbxKey>& keys, const std::vector<std::int64_
   }
 }
 
-// Where on [0, 1] a Bezier curve of inner ordinates a and 1 - b stands at x.
+// The parameter on [0, 1] where a Bezier curve of inner ordinates a and 1 - b reaches x.
 double bezierParameter(double x, double a, double b) {
   double low = 0, high = 1;
   for (int i = 0; i < 52; ++i) {  // bits of a double

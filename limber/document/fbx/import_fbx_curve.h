@@ -40,7 +40,7 @@ class FbxCurve {
 
   const std::vector<FbxKey>& keys() const { return keys_; }
 
-  // Before the first and after the last key the curve stands still. `fromLeft`: the limit from earlier times, which
+  // Before the first and after the last key the curve is constant. `fromLeft`: the limit from earlier times, which
   // differs where a step ends.
   double at(std::int64_t ticks, bool fromLeft = false) const;
 

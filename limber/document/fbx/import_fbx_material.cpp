@@ -126,7 +126,7 @@ gltf::Material FbxMaterials::convert(Index object, const std::vector<std::string
   result.name = objects_[object].name;
   gltf::MetallicRoughness& surface = result.pbrMetallicRoughness.emplace();
   surface.baseColorTexture = textureUse(object, kColorMaps, textureSets);
-  // A texture takes the place of the colour, which its factor still dims.
+  // A texture replaces the colour, but its factor still dims the texture.
   Vec3 base = surface.baseColorTexture ? clamped(Vec3(Vec3::Ones() * properties.number("DiffuseFactor", 1)))
                                        : colorOf(object, "DiffuseColor", "DiffuseFactor", kSdkGrey);
   if (areAllBlack_) {

@@ -30,12 +30,12 @@ class FbxMaterials {
   gltf::Material convert(Index object, const std::vector<std::string>& textureSets);
   Vec3 colorOf(Index object, std::string_view color, std::string_view factor, double otherwise) const;
   double opacityOf(const FbxProperties& properties) const;
-  // The object of class Texture that stands for a property.
+  // The object of class Texture that is connected to a property.
   std::optional<Index> textureOf(Index object, std::string_view property);
   std::optional<gltf::TextureUse> textureUse(Index object, std::span<const std::string_view> properties,
                                              const std::vector<std::string>& textureSets);
   std::optional<Index> texture(Index object);
-  // The picture of a texture object: one for all textures that take it from one place.
+  // The image of a texture object: one for all textures with the same source.
   std::optional<Index> image(Index texture);
   void warnOfOthers(Index object);
   bool allBlack() const;

@@ -29,7 +29,7 @@ struct FbxMeshPlan {
 
 struct FbxPrimitive {
   gltf::Primitive primitive;
-  Index material = 0;  // place among the model's materials
+  Index material = 0;  // index into the model's materials
 };
 
 struct FbxMesh {

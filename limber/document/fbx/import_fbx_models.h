@@ -14,8 +14,8 @@
 
 namespace limber {
 
-// The curves that move a model in one clip: by kind (translation, rotation, scaling) and axis; null where a number
-// stands still, then at `still`.
+// The curves that move a model in one clip: by kind (translation, rotation, scaling) and axis; null where a component
+// has no curve, which then has the value in `still`.
 struct FbxMotion {
   std::array<std::array<const FbxCurve*, 3>, 3> curves = {};
   std::array<Vec3, 3> still;
@@ -29,7 +29,7 @@ struct FbxModel {
   Index object = 0;
   std::optional<Index> parent;  // model
   FbxTransform transform;
-  // Does its scale come down from its parents in a way that glTF does not have (FbxInherit), and matter? Then its
+  // Does it inherit its parents' scale in a manner that glTF does not have (FbxInherit), with an effect? Then its
   // transform in the document depends on those of its parents.
   bool isCompensated = false;
 };
@@ -49,7 +49,7 @@ class FbxModels {
   // curve gives the model another scale than its rest's.
   void findCompensated(const std::vector<bool>& curvesScale);
 
-  // How a model stands to its parent in glTF's way of inheriting, where each is posed by `poseOf(model)`.
+  // A model's transform relative to its parent by glTF's inheritance, where each is posed by `poseOf(model)`.
   template <typename PoseOf>
   Affine localOf(Index model, const PoseOf& poseOf) const;
   Affine restLocal(Index model) const;

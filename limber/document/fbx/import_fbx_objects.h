@@ -39,7 +39,7 @@ struct FbxObject {
   std::string_view kind;  // "Mesh", "LimbNode", "Skin", ...
 };
 
-// Views into an FbxFile, which must outlive this. Objects go by their place in the file.
+// Views into an FbxFile, which must outlive this. Objects are numbered by their order in the file.
 class FbxObjects {
  public:
   explicit FbxObjects(const FbxFile& file);
@@ -54,8 +54,8 @@ class FbxObjects {
   bool is(Index object, std::string_view className) const { return objects_[object].node->name == className; }
   bool is(Index object, std::string_view className, std::string_view kind) const;
 
-  // What is connected to an object and what it is connected to, in the order of the file; the scene's root is none.
-  // What is connected twice in one way counts once, but for materials.
+  // What is connected to an object and what it is connected to, in the order of the file; the scene's root is left out.
+  // Equal connections count once, except those of materials.
   std::span<const Link> sources(Index object) const { return sources_[object]; }
   std::span<const Link> destinations(Index object) const { return destinations_[object]; }
 
@@ -66,7 +66,8 @@ class FbxObjects {
 
  private:
   void addObject(const FbxNode& node);
-  // Once for each of those in `known`; materials again, whose places in their model's list are their numbers.
+  // Each connection is added once (see `known`), but materials are added again: their numbers are their positions in
+  // their model's list.
   using Connection = std::tuple<Index, Index, std::string_view>;  // source, destination, property
   void addConnection(const FbxNode& node, std::set<Connection>& known);
 

@@ -29,7 +29,7 @@ std::optional<FbxSkin> readFbxSkin(const FbxObjects& objects, const FbxModels& m
 struct FbxShapeChannel {
   Index object = 0;
   double percent = 0;                // at rest
-  std::vector<Index> targets;        // places in FbxShapes::targets
+  std::vector<Index> targets;        // indices into FbxShapes::targets
   std::vector<double> fullPercents;  // #targets, ascending: where each is reached in full
 
   // Weights of the targets at a percentage.

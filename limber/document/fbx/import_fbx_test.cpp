@@ -196,7 +196,7 @@ std::string shapes(std::int64_t flags, const std::vector<double>& data, std::int
   return wholes("KeyAttrFlags", {flags}) + array("KeyAttrDataFloat", data) + wholes("KeyAttrRefCount", {count});
 }
 
-// A model 1 whose property is moved by curves of x, y and z, or stands still where the curves' node says.
+// A model 1 whose property is moved by curves of x, y and z, or constant with the values of the curves' node.
 Asset animated(const std::string& lines, const char* property, const std::array<std::string, 3>& curves,
                const std::string& stack = {}, const std::string& still = {}) {
   std::string objects =
@@ -296,7 +296,7 @@ TEST(ImportFbx7, SlopesOfCubicKeysAreHermites) {
   expectSlopes({3, -2, 0, 0}, 3, -2);
 }
 
-// What stands still between the keys of another part is shown by the node itself.
+// What is constant while another property is animated, here a mirroring scale, comes from the node itself.
 TEST(ImportFbx7, MirroredModelsTurnAsTheirCurvesSay) {
   for (const Vec3& scale : {Vec3(1, 1, -2), Vec3(-1, -3, 1), Vec3(1, -1, 1), Vec3(-1, -1, -1)}) {
     const Asset asset = animated(vector("Lcl Scaling", scale) + vector("Lcl Rotation", {0, 20, 0}), "Lcl Rotation",
@@ -441,7 +441,7 @@ std::string matrix(const char* name, const Affine& map) {
 }
 
 TEST(ImportFbx7, ASkinStandsWhereItWasBoundAndBendsWithItsJoints) {
-  // The mesh's model is turned and scaled; the joint was bound elsewhere than it stands.
+  // The mesh's model is rotated and scaled; the joint was bound elsewhere than where its node is.
   const Affine mesh = Eigen::Translation3d(1, 2, 3) * Affine(turns({0, 90, 0}, {0, 1, 2})) * Eigen::Scaling(2.0);
   const Affine bound = Eigen::Translation3d(0, 1, 0) * Affine(turns({45, 0, 0}, {0, 1, 2}));
   const Affine nodeTransform = Affine(Eigen::Translation3d(0, 1, 5));
@@ -492,7 +492,7 @@ TEST(ImportFbx7, BlendShapesWithOneInBetween) {
                                      "Deformer: 5, \"Deformer::b\", \"BlendShape\" {\n}\n" + channel,
                                  link(1, 0) + link(3, 1) + link(5, 3) + link(6, 5) + link(7, 6) + link(8, 6));
   const gltf::Mesh& mesh = asset.document.meshes.at(0);
-  EXPECT_EQ(mesh.weights, (std::vector<double>{0.5, 0.5}));  // half of the way from the first to the second
+  EXPECT_EQ(mesh.weights, (std::vector<double>{0.5, 0.5}));  // halfway from the first to the second
   ASSERT_EQ(mesh.primitives.at(0).targets.size(), 2u);
   const std::vector<float> moves = readFloats(asset, *mesh.primitives[0].targets[1].find("POSITION"));
   EXPECT_EQ(moves, (std::vector<float>{0, 0, 0, 0, 3, 0, 0, 0, 0}));

@@ -20,7 +20,7 @@ Quat turnAbout(int axis, double degrees) {
 }  // namespace
 
 Quat fbxRotation(const Vec3& degrees, int order) {
-  // The axis that turns first stands first.
+  // The first axis is applied first.
   constexpr std::array<std::array<int, 3>, 6> kOrders = {
       {{0, 1, 2}, {0, 2, 1}, {1, 2, 0}, {1, 0, 2}, {2, 0, 1}, {2, 1, 0}}};
   const std::array<int, 3>& axes = kOrders[order >= 0 && order < 6 ? static_cast<std::size_t>(order) : 0];

@@ -1,4 +1,4 @@
-// How an FBX model stands to its parent.
+// An FBX model's transform relative to its parent.
 #pragma once
 
 #include "limber/core/transform.h"
@@ -18,8 +18,8 @@ struct FbxPose {
 // child's. Else a child is not sheared by its parent (RrSs), and in Rrs does not feel the parent's own scale either.
 enum class FbxInherit { kRrSs = 0, kRSrs = 1, kRrs = 2 };
 
-// What of a model's transform stands still: T Roff Rp Rpre R Rpost^-1 Rp^-1 Soff Sp S Sp^-1, as the FBX SDK's
-// documentation ("Computing transformation matrices") has it.
+// The constant part of a model's transform: T Roff Rp Rpre R Rpost^-1 Rp^-1 Soff Sp S Sp^-1, as in the FBX SDK's
+// documentation ("Computing transformation matrices").
 struct FbxTransform {
   FbxPose rest;
   Vec3 rotationOffset = Vec3::Zero(), rotationPivot = Vec3::Zero();
@@ -34,7 +34,7 @@ struct FbxTransform {
   // track of rotations alone has to fit the node's scale.
   Transform localMirroredOnX(const FbxPose& pose) const;
 
-  // Does the place depend on how the model is turned or scaled?
+  // Does the position depend on how the model is rotated or scaled?
   bool turnsAboutPivot() const { return !rotationArm(Vec3::Ones()).isZero(0) || !scalingPivot.isZero(0); }
 
  private:

@@ -36,7 +36,7 @@ void setShape(gltf::ElementType type, AccessorLayout& layout) {
   layout.elementSize = layout.columns * layout.columnStride;
 }
 
-// The view that something at `place` names.
+// The view that something at `location` refers to.
 ViewLayout viewOf(const Asset& asset, Index view, const std::string& location) {
   requireElement(view, asset.document.bufferViews.size(), [&] { return location + ".bufferView"; });
   return viewLayout(asset, view);

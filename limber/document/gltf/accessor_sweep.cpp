@@ -72,8 +72,8 @@ void AccessorSweep::sweep(Asset& asset) const {
   const std::vector<bool> used = usedAccessors(document);
   const auto count = static_cast<Index>(used.size());
   const auto countBefore = static_cast<Index>(usedBefore_.size());
-  // What stands at each place of the new list. New accessors fill the places that became free, so that as few numbers
-  // as possible change: none that was there before, unless the edit takes out more than it adds.
+  // The accessor in each slot of the new list. New accessors fill the slots that became free, so that as few numbers as
+  // possible change: none of the old ones, unless the edit removes more than it adds.
   std::vector<std::optional<Index>> slots(countBefore);
   for (Index a = 0; a < countBefore; ++a) {
     if (used[a] || !usedBefore_[a]) slots[a] = a;

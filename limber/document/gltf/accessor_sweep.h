@@ -8,10 +8,10 @@
 namespace limber {
 
 // Made before an edit, swept after it: accessors that something used before and nothing uses now (weights and inverse
-// binds of a rig that is gone, keys of its clips) are taken off the document's list. Accessors that the edit added take
-// their places; where it added fewer than it freed, later ones move up and all references are renumbered.
-// Buffers and buffer views stay as they are, to the byte. Does nothing to a document with extensions that may refer to
-// accessors in ways of their own.
+// binds of a rig that is gone, keys of its clips) are removed from the document's list. Accessors that the edit added
+// take over their numbers; where it added fewer than it freed, later ones move up and all references are renumbered.
+// Buffers and buffer views stay as they are, to the byte. Does nothing to a document with unknown extensions that may
+// refer to accessors.
 class AccessorSweep {
  public:
   explicit AccessorSweep(const Asset& asset);

@@ -143,7 +143,7 @@ class DataChecker {
     return *largest_[accessor];
   }
 
-  // Shapes that a primitive's attributes and its morph targets share. `tangent`: components of TANGENT, of which morph
+  // Shapes common to a primitive's attributes and its morph targets. `tangent`: components of TANGENT, of which morph
   // targets leave out the handedness.
   static void checkShape(std::string_view name, const AccessorInfo& info, Index tangent, const std::string& location) {
     const auto require = [&](Index least, Index most, std::string_view shape) {

@@ -164,7 +164,7 @@ TEST(CheckAsset, PrimitivesAreConsistent) {
   EXPECT_EQ(faultLocation(beyond), "meshes[0].primitives[0].indices");
 }
 
-// Whether a primitive with this attribute, of four elements, is refused at its place.
+// Whether a primitive with this attribute, of four elements, is refused with the attribute's path.
 void expectShape(const std::string& name, const char* type, int componentType, bool good, bool target = false) {
   GltfBuilder model = everythingModel();
   const Index accessor = model.accessor(std::vector<float>(16), componentType, type, 4);

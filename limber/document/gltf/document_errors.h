@@ -1,4 +1,4 @@
-// Errors that name a place in a document ("meshes[0].primitives[2].indices").
+// Errors with a path in a document ("meshes[0].primitives[2].indices").
 #pragma once
 
 #include <optional>
@@ -20,7 +20,8 @@ inline std::string accessorLocation(Index accessor) {
   return fmt::format("accessors[{}]", accessor);
 }
 
-// Fails unless the number, if there is one, is one of `count` elements. `place()` makes the path of what refers to it.
+// Fails unless the number, if there is one, is one of `count` elements. `location()` makes the path of what refers to
+// it.
 template <typename Location>
 void requireElement(std::optional<Index> number, std::size_t count, const Location& location) {
   if (!number || *number < count) return;

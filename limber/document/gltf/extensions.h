@@ -29,16 +29,16 @@ void declareExtension(gltf::Document& document, std::string_view name);
 void undeclareExtension(gltf::Document& document, std::string_view name);
 
 // The accessors of a node's EXT_mesh_gpu_instancing ("TRANSLATION", "ROTATION", "SCALE"); none where it does not use
-// it. Throws Error kBadData below `place` ("nodes[3]") where they are no numbers.
+// it. Throws Error kBadData below `location` ("nodes[3]") where they are no numbers.
 gltf::Attributes instancingOf(const gltf::Node& node, std::string_view location);
 
 // The pointer of a target with KHR_animation_pointer ("/nodes/12/rotation"); null where it has none.
 const std::string* animationPointer(const gltf::AnimationChannel::Target& target);
 void setAnimationPointer(gltf::AnimationChannel::Target& target, std::string_view pointer);
 
-// Counts the required extensions that may change how the model looks or moves in a way that limber knows nothing of:
-// warning "unknown-extensions". They stay as they are. Extensions of materials, textures and lights do not count:
-// nothing that limber does depends on them.
+// Counts the required extensions that may change how the model looks or moves and that limber does not know: warning
+// "unknown-extensions". They stay as they are. Extensions of materials, textures and lights do not count: nothing that
+// limber does depends on them.
 void warnOfUnknownExtensions(Asset& asset);
 
 }  // namespace limber

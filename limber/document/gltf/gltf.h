@@ -45,7 +45,7 @@ struct Object {
                     // members, the order of keys and the numbers' form stay
 };
 
-// An object that can be referred to by its place in one of the document's lists.
+// An object that can be referred to by its index in one of the document's lists.
 struct Element : Object {
   std::string name;  // empty: none
 };
@@ -102,7 +102,7 @@ class Attributes {
   explicit Attributes(std::vector<std::pair<std::string, Index>> list) : list_(std::move(list)) {}  // names differ
 
   std::optional<Index> find(std::string_view name) const;
-  void set(std::string_view name, Index accessor);  // in its place, else behind the others
+  void set(std::string_view name, Index accessor);  // replaces the attribute, or appends it
   bool erase(std::string_view name);                // true if it was there
 
   bool empty() const { return list_.empty(); }
@@ -145,7 +145,7 @@ struct Node : Element {
   std::optional<Vec3> translation;
   std::optional<Vec4> rotation;  // quaternion x, y, z, w
   std::optional<Vec3> scale;
-  std::vector<double> weights;  // of its mesh's blend shapes, in place of the mesh's own; empty: none
+  std::vector<double> weights;  // of its mesh's blend shapes, overriding the mesh's own; empty: none
 
   bool hasTransform() const { return matrix || translation || rotation || scale; }
   void clearTransform();

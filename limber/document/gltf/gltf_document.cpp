@@ -22,7 +22,7 @@ namespace limber {
 
 namespace {
 
-// A buffer that only stands for what compressed buffer views decode to has no bytes of its own to load.
+// A fallback buffer, which compressed buffer views decode to, has no bytes of its own to load.
 bool isCompressionFallback(const gltf::Buffer& buffer, const std::string& location) {
   const auto isFallback = [&](const char* name) {
     const std::string path = location + ".extensions." + name;

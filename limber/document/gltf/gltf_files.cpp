@@ -57,7 +57,7 @@ class Names {
   }
 
  private:
-  // Two that want one name with the same bytes share the file.
+  // Two that want one name with the same bytes use the same file.
   bool take(const fs::path& path, ByteSpan bytes) {
     const auto [known, isNew] = taken_.try_emplace(path.lexically_normal(), bytes);
     return isNew || (known->second && sameBytes(*known->second, bytes));

@@ -18,9 +18,9 @@ struct GltfFiles {
   std::vector<File> beside;
 };
 
-// The document as it is to stand at `place`. Buffers and images that had a file keep its name (and folder), others
-// become <stem>.bin, <stem>_1.bin, ...; data URIs stay such. Where another file of that name is there already, with
-// other bytes, theirs gets the stem in front: an older model keeps what it refers to.
+// The document as it is to be written at `location`. Buffers and images that had a file keep its name (and folder),
+// others become <stem>.bin, <stem>_1.bin, ...; data URIs stay such. Where another file of that name exists already,
+// with other bytes, the new file's name gets the stem as a prefix: an older model keeps what it refers to.
 GltfFiles gltfFiles(const Asset& asset, const std::filesystem::path& location);
 
 }  // namespace limber

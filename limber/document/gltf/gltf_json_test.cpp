@@ -281,7 +281,7 @@ TEST(GltfJson, AChangedMemberChangesNothingElse) {
   for (const Change& change : kChanges) expectOnly(parsed(kEverything), change);
 }
 
-// So that a document that was saved and opened on the way is written like one that was not.
+// So that a document that was saved and opened in between is written like one that was not.
 TEST(GltfJson, ANewMemberStandsWhereANewObjectHasIt) {
   Document made;
   Node& node = made.nodes.emplace_back();

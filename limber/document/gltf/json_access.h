@@ -15,21 +15,21 @@
 
 namespace limber {
 
-// A value inside a document together with the way to it ("meshes[0].primitives[2]"). May stand for an absent value: an
+// A value inside a document together with its path ("meshes[0].primitives[2]"). May represent an absent value: an
 // absent array has size 0, an absent object has no members.
 //
-// Cheap to copy. Valid as long as the JSON is not changed; the keys given to it must live as long (literals do).
-// Every getter throws Error kBadData, with the path in where(), if what is there has the wrong type.
+// Cheap to copy. Valid as long as the JSON is not changed; the keys given to it must live as long (literals do). Every
+// getter throws Error kBadData, with the path in where(), if what is there has the wrong type.
 class JsonView {
  public:
   explicit JsonView(const Json& root) : value_(&root) {}
-  // A value that stands at `place` of a larger one; null: absent. `place` must live as long.
+  // A value at `location` of a larger one; null: absent. `location` must live as long.
   JsonView(const Json* value, std::string_view location) : value_(value), steps_{Step{location}}, depth_(1) {}
 
   bool exists() const { return value_ != nullptr; }
   const Json& json() const { return *value_; }  // only where exists()
   std::string path() const;
-  [[noreturn]] void fail(std::string message) const;  // Error kBadData at this place
+  [[noreturn]] void fail(std::string message) const;  // Error kBadData at this path
 
   // Members of an object. member: whatever is there, absent if nothing is. The others check the type of what is there
   // and are absent, or the given default, where the key is missing.
@@ -62,7 +62,7 @@ class JsonView {
     std::string_view key = {};  // data() is null: an array element
     std::size_t element = 0;
   };
-  static constexpr std::size_t kSteps = 10;  // deeper places are shortened to this in messages
+  static constexpr std::size_t kSteps = 10;  // longer paths are shortened to this in messages
 
   JsonView step(const Json* value, Step step) const;
 

@@ -8,7 +8,7 @@
 
 namespace limber {
 
-// Throws Error kBadData, at the object's place, where it has another key: a misspelt one would silently do nothing.
+// Throws Error kBadData, at the object's path, where it has another key: a misspelt one would silently do nothing.
 void allowKeys(const JsonView& object, std::initializer_list<std::string_view> keys);
 
 }  // namespace limber

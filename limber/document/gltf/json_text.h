@@ -9,9 +9,9 @@
 namespace limber {
 
 // Keeps the order of keys and every number: whole numbers of 64 bits as such, others as the nearest double. Where an
-// object has a key twice the last one counts, with a warning "duplicate-keys". Throws Error kBadData with the place
-// (byte) where the text breaks JSON or UTF-8, kLimit on nesting deeper than 200 or an object of more than 65536 keys.
-// A byte order mark is skipped. Linear in the length of the text.
+// object has a key twice the last one counts, with a warning "duplicate-keys". Throws Error kBadData with the byte
+// offset where the text breaks JSON or UTF-8, kLimit on nesting deeper than 200 or an object of more than 65536 keys. A
+// byte order mark is skipped. Linear in the length of the text.
 Json parseJson(std::string_view text, Warnings& warnings);
 
 // indent < 0: no white space. Throws Error kBadData where a string is not UTF-8.

@@ -123,8 +123,8 @@ class ReferenceChanger {
     if (list.empty()) owner.erase(key);
   }
 
-  // Works on a copy, so that documents that share the JSON keep theirs. An extension that says nothing any more without
-  // what it named is set to null, and goes.
+  // Works on a copy, so that documents that share the JSON keep theirs. An extension that says nothing
+  // without what it referred to is set to null, and removed.
   template <typename Act>
   void inExtension(gltf::Object& owner, const char* name, const Act& act) {
     const Json* found = extensionOf(owner, name);
@@ -155,7 +155,7 @@ class ReferenceChanger {
     }
   }
 
-  // "bufferView": 3, wherever in an extension it stands.
+  // "bufferView": 3, anywhere in an extension.
   void bufferViews(Json& value) {
     if (!value.is_structured()) return;
     one(ElementKind::kBufferView, value, "bufferView");
@@ -177,7 +177,7 @@ class ReferenceChanger {
     inEachExtension(material, [&](Json& content) { textures(content); });
   }
 
-  // "clearcoatTexture": {"index": 3}, wherever in there it stands.
+  // "clearcoatTexture": {"index": 3}, anywhere in an extension.
   void textures(Json& value) {
     if (!value.is_structured()) return;
     for (auto entry = value.begin(); entry != value.end(); ++entry) {
@@ -378,7 +378,7 @@ void renumberVrm0(Json& vrm, const NewNumbers& newNumber) {
     }
   }
   if (Json* groups = memberToChange(*springs, "colliderGroups"); groups != nullptr && groups->is_array()) {
-    for (Json& group : *groups) newNumber.orMinusOne(group, "node");  // groups are named by their places
+    for (Json& group : *groups) newNumber.orMinusOne(group, "node");  // groups are referred to by their indices
   }
 }
 

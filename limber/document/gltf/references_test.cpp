@@ -16,7 +16,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::UnorderedElementsAre;
 
-// Every way of referring to something that limber knows; all numbers differ, so that none is mistaken for another.
+// Every kind of reference that limber knows; all numbers differ, so that none is mistaken for another.
 const char* const kEverything = R"({
   "asset": {"version": "2.0"},
   "extensions": {"KHR_lights_punctual": {"lights": [{}, {}]}},
@@ -92,7 +92,7 @@ TEST(References, AllAreChangedWhereTheyStand) {
     for (const Index number : numbers) back.insert(number - 100);
     EXPECT_EQ(back, before.at(kind));
   }
-  // What is no reference stays: 99 in every place, counts and lengths.
+  // What is no reference stays: 99 everywhere, counts and lengths.
   std::string text = gltf::jsonOf(document).dump();
   EXPECT_NE(text.find("\"weight\":99"), std::string::npos);
   EXPECT_NE(text.find("\"POSITION\":99"), std::string::npos);

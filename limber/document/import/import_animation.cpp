@@ -87,7 +87,7 @@ class AnimationImporter {
     return result;
   }
 
-  // q and -q are one rotation, but not the same way there.
+  // q and -q are the same rotation, but interpolation to them takes different paths.
   static void keepNearSide(Track& rotation) {
     for (std::size_t i = 4; i + 3 < rotation.values.size(); i += 4) {
       double dot = 0;

@@ -127,7 +127,7 @@ void warnOfConversion(Asset& asset, const Convention& convention) {
 
 // Assimp takes STL for binary by its length alone, and otherwise for text. Headers of binary ones may begin with
 // "solid", too, but their count of triangles has a byte that is 0 (up to 16 million of them), as no text has. Returns
-// the file without what stands behind its triangles.
+// the file without the bytes after its triangles.
 ByteSpan checkedStl(ByteSpan bytes) {
   if (isBinaryStl(bytes)) return bytes;
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());

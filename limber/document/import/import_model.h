@@ -8,9 +8,9 @@
 
 namespace limber {
 
-// An OBJ, STL, OFF or DAE file as a glTF document: node tree, meshes with normals, texture coordinates and
-// colours, base colours and textures, skins and node animations. Polygons are triangulated, equal corners share a
-// vertex. The format is told from the content where that is possible, else from the extension of `name`.
+// An OBJ, STL, OFF or DAE file as a glTF document: node tree, meshes with normals, texture coordinates and colours,
+// base colours and textures, skins and node animations. Polygons are triangulated, and equal corners share a vertex.
+// The format is detected from the content where that is possible, else from the extension of `name`.
 //
 // Converted to metres and +Y up where the file says what it has (DAE), with a warning "converted-units" or
 // "converted-axes". What does not come along (lights, cameras, morph targets, textures that are missing or neither PNG

@@ -37,9 +37,9 @@ struct ObjText {
   std::size_t invalidFaces = 0;  // that name what is not there
 };
 
-// Colours are three or four numbers behind a vertex' place; alpha is 1 where it is not given. Throws Error kBadData
-// where all faces name what is not there, kLimit where objects, groups or materials change too often. Cost: two passes
-// over the text.
+// Colours are three or four numbers after a vertex's position; alpha is 1 where it is not given. Throws Error kBadData
+// where all faces refer to missing vertices, kLimit where objects, groups or materials change too often. Cost: two
+// passes over the text.
 ObjText prepareObj(ByteSpan bytes);
 
 // How many textures of an MTL file are moved or scaled (-o, -s, -t).

@@ -75,8 +75,8 @@ class SceneConverter {
     return meshes;
   }
 
-  // A node that says nothing once its skinned meshes stand on their own: the nameless top of most formats' trees, and
-  // the leaf that only held such meshes.
+  // A node that serves no purpose once its skinned meshes are nodes of their own: the nameless top of most formats'
+  // trees, and a leaf that contained only such meshes.
   bool isSuperfluous(const aiNode& node) const {
     if (animated_.count(&node) > 0 || joints_.count(&node) > 0 || !rigidMeshes(node).empty()) return false;
     if (node.mParent == nullptr) return localOf(node).isApprox(Affine::Identity(), 0);

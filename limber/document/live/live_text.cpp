@@ -21,7 +21,7 @@ constexpr std::size_t kMaxLiveJoints = 1000;
 
 constexpr std::size_t kNumbers = 7;  // of a joint
 
-// nullopt where they are no place and rotation.
+// nullopt where they are no position and rotation.
 std::optional<Transform> transformOf(const std::array<double, kNumbers>& n) {
   Transform transform;
   transform.translation = Vec3(n[0], n[1], n[2]);

@@ -9,8 +9,8 @@
 
 namespace limber {
 
-// {"joints": [{"name", "parent" (a number or null), "rest": [x, y, z of the place, x, y, z, w of the rotation]}]}, in
-// one line. Scales are left out.
+// {"joints": [{"name", "parent" (a number or null), "rest": [x, y, z of the position, x, y, z, w of the rotation]}]},
+// in one line. Scales are left out.
 std::string liveSkeletonText(const Skeleton& skeleton);
 // Throws Error kBadData where the text is none such, a rotation is not of unit length within 1e-3, or as checkSkeleton
 // does; kLimit beyond 1000 joints.

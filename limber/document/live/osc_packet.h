@@ -19,10 +19,10 @@ struct OscMessage {
   std::vector<OscValue> values;
 };
 
-// Calls `take` for each message, in their order, those of bundles in bundles (8 deep) too; when a bundle is due is not
-// looked at. False where the packet is none, from the place on where it breaks the format: a text without its end,
-// sizes that are no multiples of four or lead out of the packet, values of other types than i, f, s, T, F, N and I,
-// more than 32 of them. Memory is that of one message.
+// Calls `take` for each message, in their order, including those of nested bundles (8 deep); the time at which a bundle
+// is due is ignored. False where the packet is invalid, from the first error on: a text without its end, sizes that are
+// no multiples of four or exceed the packet, values of other types than i, f, s, T, F, N and I, more than 32 of them.
+// Memory is that of one message.
 bool readOscPacket(ByteSpan packet, const std::function<void(const OscMessage&)>& take);
 
 }  // namespace limber

@@ -12,9 +12,9 @@ namespace limber {
 // Unity's humanoid bones that there are at most.
 constexpr std::size_t kVmcBones = 55;
 
-// Keeps what came last of each bone. Read are /VMC/Ext/Bone/Pos and /VMC/Ext/Root/Pos: a name, a place (metres) and a
-// rotation (x, y, z, w), local to the bone's parent and, of the rotation, to a T-pose, in Unity's left-handed space.
-// They come out right-handed, +Y up, the performer facing +Z.
+// Keeps the last values of each bone. Reads /VMC/Ext/Bone/Pos and /VMC/Ext/Root/Pos: a name, a position (metres) and a
+// rotation (x, y, z, w), local to the bone's parent and, for the rotation, relative to a T-pose, in Unity's left-handed
+// space. The result is right-handed, +Y up, with the performer facing +Z.
 class VmcStream {
  public:
   // Takes a packet that came at that moment (seconds, rising). False where the packet breaks OSC's format; what is not

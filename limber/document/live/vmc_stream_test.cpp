@@ -31,7 +31,7 @@ TEST(VmcStream, ItsSkeletonIsThereOnceItsBonesAre) {
   EXPECT_EQ(skeleton->joints[0].name, "Hips");
   EXPECT_EQ(skeleton->joints[2].name, "LeftHand");
   EXPECT_EQ(skeleton->joints[2].parent, Index{0});  // no bone between has come
-  // No bone has a place of its own: those of a person in a T-pose, who stands on the ground.
+  // No bone comes with a position, so they get those of a person in a T-pose on the ground.
   EXPECT_NEAR(restPositions(*skeleton)[2].x(), 0.74, 1e-9);
   stream.take(bone("Head"), 2);
   EXPECT_EQ(stream.skeleton(2.1)->joints.size(), 3u);
@@ -53,7 +53,7 @@ TEST(VmcStream, ComesOutRightHanded) {
   const Skeleton& skeleton = *stream.skeleton(1);
   const std::vector<Vec3> rest = restPositions(skeleton);
   const std::size_t lower = *skeleton.find("LeftLowerArm"), upper = *skeleton.find("LeftUpperArm");
-  EXPECT_LT((rest[lower] - Vec3(0.5, 1.2, 0)).norm(), 1e-6);  // stands with its foot at 0
+  EXPECT_LT((rest[lower] - Vec3(0.5, 1.2, 0)).norm(), 1e-6);  // its foot is at height 0
   const std::vector<Vec3> now = posePositions(skeleton, stream.pose());
   EXPECT_LT((now[0] - Vec3(0.1, 1, 2 - 0.3)).norm(), 1e-6);  // turned about by the root
   EXPECT_LT((now[lower] - now[upper] - Vec3(0, 0.3, 0)).norm(), 1e-6);

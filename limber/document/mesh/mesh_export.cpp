@@ -40,7 +40,7 @@ void copyUvs(const Asset& asset, const PrimitiveInstance& instance, std::vector<
   for (Index v = 0; v < instance.vertexCount; ++v) uvs[instance.firstVertex + v] = {own[v].x(), 1 - own[v].y()};
 }
 
-// Vertices that share a place and, where the file has normals, the file's normal: these shade smoothly together.
+// Vertices that share a position and, where the file has normals, the file's normal: these shade smoothly together.
 class SmoothGroups {
  public:
   SmoothGroups(const Asset& asset, const Geometry& rest) : groupOf_(rest.positions.size()) {

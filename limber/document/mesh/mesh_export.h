@@ -45,7 +45,7 @@ struct ExportMesh {
 
 // The geometry of an asset with its materials, base colour textures and texture coordinates. `geometry` is
 // collectGeometry(asset), or the same with moved positions. Normals are made from the triangles, weighted by area; they
-// are smooth over a place where the file's own normals agree there. Cost: O(#S + #F).
+// are smooth at a position where the file's own normals agree. Cost: O(#S + #F).
 ExportMesh exportMesh(const Asset& asset, const Geometry& geometry);
 
 // Does writeMesh know that extension (".obj", ".stl", ".ply", in any case)?

@@ -26,8 +26,8 @@ struct ObjModel {
   std::vector<Index> vertexOf;  // #S vertices of collectGeometry(asset): their numbers in the file, from 0
 };
 
-// The file as readAsset gives it, but that vertices with different numbers stay apart where they are at one place.
-// Throws as readObjVertices and readAsset do.
+// The file as readAsset gives it, except that vertices with different numbers stay separate where their positions are
+// equal. Throws as readObjVertices and readAsset do.
 ObjModel readObjModel(ByteSpan bytes, std::string_view name, const Resolver& resolver);
 
 }  // namespace limber

@@ -327,7 +327,7 @@ class PlyReader {
 
   Vec3f positionOf(Index v) const { return Eigen::Map<const Vec3f>(&mesh_.attributes[0].values[3 * std::size_t{v}]); }
 
-  // Its place in the mesh; the positions' is the first.
+  // Its index in the mesh's attributes; that of the positions is the first.
   std::size_t attributeNamed(std::string_view name) {
     for (std::size_t i = 0; i < mesh_.attributes.size(); ++i) {
       if (mesh_.attributes[i].name == name) return i;

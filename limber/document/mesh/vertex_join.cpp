@@ -28,7 +28,7 @@ JoinedVertices joinVertices(const VertexRows& rows) {
   const std::size_t count = rows.count();
   JoinedVertices result;
   result.vertex.resize(count);
-  std::vector<Index> slots(std::bit_ceil(2 * count + 2), kNoIndex);  // open addressing, places in `kept`
+  std::vector<Index> slots(std::bit_ceil(2 * count + 2), kNoIndex);  // open addressing, indices into `kept`
   const std::size_t mask = slots.size() - 1;
   for (std::size_t v = 0; v < count; ++v) {
     std::size_t slot = rows.hash(v) & mask;

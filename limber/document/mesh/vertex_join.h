@@ -35,7 +35,7 @@ class VertexRows {
 
 struct JoinedVertices {
   std::vector<Index> kept;    // the rows that stay, ascending: the first of each kind
-  std::vector<Index> vertex;  // #rows, place in `kept`
+  std::vector<Index> vertex;  // #rows, index into `kept`
 };
 
 // Cost: linear, by a hash table.

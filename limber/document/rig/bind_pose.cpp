@@ -54,7 +54,7 @@ bool sameScale(const Affine& a, const Affine& b) {
   return va * vb > 0 && std::abs(std::cbrt(va / vb) - 1) < 0.01;
 }
 
-// Places the skins of one document.
+// Positions the skins of one document.
 class BindPoseBuilder {
  public:
   BindPoseBuilder(const Asset& asset, const SceneGraph& graph) : asset_(asset), graph_(graph) {

@@ -16,10 +16,10 @@ struct SkinBinding {
 SkinBinding readSkinBinding(const Asset& asset, Index skin);
 
 // Inverse bind matrices fix the joints only within each skin's own mesh space. Here all of those spaces are mapped to
-// one world: skins that share joints, or whose joints hang on each other, are placed so that these coincide; the first
-// of such a group is placed where the file's nodes have it. Where the nodes hold another pose than the bind pose, the
-// joints that the pose moved together decide, unless the mesh's own node tells (exporters leave the object's placement
-// there although glTF ignores it).
+// one world: skins that share joints, or whose joints are descendants of each other, are positioned so that these
+// coincide; the first of such a group is positioned by the file's nodes. Where the nodes are in another pose than the
+// bind pose, the joints that the pose moved together decide, unless the mesh's own node gives the transform (exporters
+// leave the object's transform there although glTF ignores it).
 struct BindPose {
   std::vector<Index> skins;         // that the scene uses, in the order met; all of the document's where it uses none
   std::vector<Affine> skinToWorld;  // #skins of the document, identity where not in `skins`

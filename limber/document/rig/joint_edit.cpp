@@ -66,7 +66,7 @@ void unhang(gltf::Document& document, const SceneGraph& graph, Index node) {
   for (gltf::Scene& scene : document.scenes) std::erase(scene.nodes, node);
 }
 
-// Below another node, standing in the same place.
+// Makes the node a child of another and keeps its world transform.
 void hangNode(Asset& asset, Index node, Index parent) {
   const SceneGraph graph = readSceneGraph(asset.document);
   const Affine local = graph.world[parent].inverse(Eigen::Affine) * graph.world[node];
@@ -78,7 +78,7 @@ void hangNode(Asset& asset, Index node, Index parent) {
   setNodeTransform(asset.document.nodes[node], local, false);
 }
 
-// Node -> its skins' joints without it, with `heir` in its place where nothing would be left.
+// Removes the node from its skins' joints; `heir` replaces it in skins that do not have it yet.
 void takeOutOfSkins(Asset& asset, const BindPose& bind, Index node, Index heir) {
   for (Index skin = 0; skin < asset.document.skins.size(); ++skin) {
     const SkinBinding binding = readSkinBinding(asset, skin);

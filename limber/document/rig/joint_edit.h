@@ -7,9 +7,9 @@
 
 namespace limber {
 
-// All three want skeleton = readSkeleton(asset) of the asset as it is, and no animation of its joints (they would not
-// mean the same). Bind pose, nodes' places in the world and skins of all other joints stay. Read the skeleton again
-// afterwards: joints have other numbers.
+// All three require skeleton = readSkeleton(asset) of the asset as it is, and no animation of its joints (it would not
+// mean the same afterwards). The bind pose, the nodes' world transforms and the skins of all other joints stay. Read
+// the skeleton again afterwards: joints have other numbers.
 
 // A joint without weights below another, at `translation` in the other's frame and turned as it is. It joins the skins
 // that the joint above belongs to. `name` must not be a joint's.
@@ -19,9 +19,9 @@ void addJoint(Asset& asset, const AssetSkeleton& skeleton, Index parent, const V
 // With all that hangs on it; `parent` is neither the joint nor below it.
 void hangJoint(Asset& asset, const AssetSkeleton& skeleton, Index joint, Index parent);
 
-// What hangs on it hangs on what it hung on. Skins that need a joint in its place take `heir`. No vertex may have
-// weights of it: see replaceWeights; those of the others are written anew, as they are in `weights`. A node that holds
-// something else than joints stays, and so does a root's: they are no joints any more.
+// The joint's children become children of its parent. Skins that need a joint as its replacement take `heir`. No vertex
+// may have weights of it: see replaceWeights; those of the others are rewritten, as they are in `weights`. A node that
+// contains something else than joints stays, and so does a root's: they are no joints any more.
 //
 // geometry, weights  of the asset as it is, over `skeleton`
 void removeJoint(Asset& asset, const Geometry& geometry, const AssetSkeleton& skeleton, const SkinWeights& weights,

@@ -1,4 +1,4 @@
-// The pose in an Asset: how its joints stand, how they are to stand, and a mesh frozen as it stands.
+// The pose in an Asset: reads it, sets it, and bakes a mesh in it.
 #pragma once
 
 #include <span>
@@ -12,9 +12,9 @@ namespace limber {
 // Often not the rest pose: that is the bind pose.
 Pose readNodePose(const Asset& asset, const AssetSkeleton& skeleton);
 
-// Lets the joint nodes stand in that pose. Nodes whose transform stays the same are not touched; one that had a matrix
-// gets translation, rotation and scale. Clips are as they were: they move the joints away from the pose when played.
-// Throws Error kBadData naming the node where a root stands below a node without an inverse (a scale of 0).
+// Sets the transforms of the joint nodes to that pose. Nodes whose transform stays the same are not touched; one that
+// had a matrix gets translation, rotation and scale. Clips are as they were: they move the joints away from the pose
+// when played. Throws Error kBadData naming the node where a root is below a node without an inverse (a scale of 0).
 void writeNodePose(Asset& asset, const AssetSkeleton& skeleton, const Pose& pose);
 
 // glTF's transform of a direction at right angles to the surface: by the cofactors of the linear part, of length 1 or

@@ -1,4 +1,4 @@
-// A new rest pose for a rigged Asset: the pose that it stands in becomes the one that it is bound in.
+// A new rest pose for a rigged Asset: its current pose becomes the bind pose.
 #pragma once
 
 #include <optional>
@@ -10,9 +10,9 @@
 namespace limber {
 
 // Vertices go where linear blend skinning takes them in `pose`, normals, tangents and morph targets with them; the
-// joint nodes stand in the pose, and inverse bind matrices say that this is where the skins are bound. Clips move
-// joints as they did: where an animation left a part of a joint's transform to its node and the node has changed, it is
-// given a key that holds the old one.
+// joint nodes get the pose, and the inverse bind matrices make it the bind pose of the skins. Clips move joints as they
+// did: where an animation left a part of a joint's transform to its node and the node has changed, it gets a key that
+// holds the old value.
 //
 // A vertex whose joints all moved alike from bind pose to `pose` (those of a single joint among them) looks the same at
 // every moment of every clip. One that is shared by joints that moved against each other does in `pose` only; no
@@ -25,8 +25,8 @@ namespace limber {
 // skeleton  readSkeleton(asset) of the asset as it is
 // pose      as of readNodePose
 //
-// stretch   #J maps in the joints' own frames, by which what is bound to each is deformed on the way; what hangs on the
-//           joint, other joints among it, is not. Empty: none
+// stretch   #J maps in the joints' own frames, by which what is bound to each is deformed before it moves; the joint's
+//           children, other joints among them, are not. Empty: none
 void setRestPose(Asset& asset, const AssetSkeleton& skeleton, const Pose& pose, std::span<const Mat3> stretch = {});
 
 // Brings the vertices of skins that were bound in another pose than the joints they share (skinsBoundElsewhere) to the
@@ -38,8 +38,8 @@ bool joinBindPoses(Asset& asset);
 // The same of a copy; none where there is nothing to do.
 std::optional<Asset> withJoinedBinds(const Asset& asset);
 
-// The joint nodes alone stand in that pose: the surface follows by its weights, skins stay bound where they are, and
-// clips show every vertex where they did, held by keys as above. Throws as writeNodePose does.
+// Gives only the joint nodes that pose: the surface follows by its weights, skins stay bound where they are, and clips
+// show every vertex where they did, by added keys as above. Throws as writeNodePose does.
 void setNodePose(Asset& asset, const AssetSkeleton& skeleton, const Pose& pose);
 
 }  // namespace limber

@@ -36,7 +36,7 @@ Json numbers(const Eigen::Ref<const Eigen::VectorXd>& vector) {
   return result;
 }
 
-// hip - chest - arm, hip - leg; their nodes do not stand in the bind pose. Two skins share chest and hip.
+// hip - chest - arm, hip - leg; their nodes are not in the bind pose. Two skins share chest and hip.
 struct TwoSkins {
   SceneBuilder scene;
   Random random;
@@ -145,7 +145,7 @@ struct Shown {
   std::vector<Vec3> positions, normals, tangents, morphed;
 };
 
-// All vertices of all skinned nodes, node by node, as a viewer places them.
+// All vertices of all skinned nodes, node by node, at the positions where a viewer shows them.
 Shown show(const Asset& asset, const std::vector<Transform>& locals) {
   const SceneGraph graph = readSceneGraph(asset.document);
   std::vector<Affine> world(locals.size());

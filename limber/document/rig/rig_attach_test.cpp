@@ -211,7 +211,7 @@ TEST(AttachRig, EachShowingOfAMeshGetsWeightsOfItsOwn) {
   const Attached rigged = attach(scene.build());
   const gltf::Document& document = rigged.after.document;
   ASSERT_EQ(document.meshes.size(), 3u);
-  EXPECT_EQ(document.skins.size(), 2u);  // two of them stand in the same place
+  EXPECT_EQ(document.skins.size(), 2u);  // two of them have the same transform
   const auto attribute = [&](Index m, const char* name) {
     return document.meshes[m].primitives[0].attributes.find(name);
   };

@@ -24,11 +24,11 @@ AssetSkeleton readSkeleton(const Asset& asset);
 // file gives nothing).
 SkinWeights readWeights(const Asset& asset, const Geometry& geometry, const AssetSkeleton& skeleton);
 
-// Takes every skin, its joints and weights attributes, and the animation channels of its joint nodes out. Joint nodes
-// that hold nothing else go too; nodes that hold a mesh, a camera, a light or children of such keep their place in the
-// world, in the bind pose. A mesh that attachRig handed to another node goes back to its own.
-// Accessors that only the rig used leave the list; buffers keep their bytes. Warning "node-references" where extensions
-// may name nodes by number.
+// Removes every skin, its joints and weights attributes, and the animation channels of its joint nodes. Joint nodes
+// that contain nothing else go too; nodes that have a mesh, a camera, a light or children with such keep their world
+// transform, in the bind pose. A mesh that attachRig moved to another node returns to its own. Accessors that only the
+// rig used leave the list; buffers keep their bytes. Warning "node-references" where extensions may refer to nodes by
+// number.
 void removeRig(Asset& asset);
 
 // Puts a rig in: joint nodes below a new root node (named "limber_rig"), a skin for each differing node transform,

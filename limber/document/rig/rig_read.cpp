@@ -38,8 +38,7 @@ std::vector<bool> skeletonNodes(const SceneGraph& graph, const std::vector<bool>
   return result;
 }
 
-// The rest transform that brings a joint to `bind` below a parent that stands at `parent`; the node's own one where
-// that cannot be.
+// The rest transform that brings a joint to `bind` below a parent at `parent`; the node's own if none exists.
 Transform restTransform(const Affine& parent, const Affine& bind, const Affine& stored) {
   const Affine local = parent.inverse(Eigen::Affine) * bind;
   if (local.matrix().allFinite()) return decompose(local);

@@ -51,8 +51,8 @@ class RigRemover {
  private:
   gltf::Node& node(Index n) const { return asset_.document.nodes[n]; }
 
-  // Joints and what hangs on them go unless they, or nodes below them, hold something that is not the rig's. So do
-  // nodes above that held nothing but joints (an exporter's "Armature", limber's own "limber_rig").
+  // Joints and their descendants go unless they, or nodes below them, contain something that is not the rig's. So do
+  // nodes above that contained nothing but joints (an exporter's "Armature", limber's own "limber_rig").
   std::vector<bool> nodesToKeep() const {
     std::vector<bool> onJoint(isJoint_), keep(graph_.nodeCount()), lostChild(graph_.nodeCount());
     for (const Index n : graph_.allNodes) {
@@ -73,8 +73,8 @@ class RigRemover {
     return keep;
   }
 
-  // A mesh that attachRig handed to a node at the root goes back to the node that it came from, so that rigging again
-  // and again piles nothing up: recognised by the name, where that node has no mesh and stands in the mesh's place.
+  // A mesh that attachRig moved to a node at the root returns to the node that it came from, so that repeated rigging
+  // does not pile up nodes: recognised by the name, where that node has no mesh and has the mesh's transform.
   void giveMeshesBack(std::vector<bool>& keep) {
     std::map<std::string, std::vector<Index>> byName;
     for (Index n = 0; n < graph_.nodeCount(); ++n) byName[node(n).name].push_back(n);
@@ -115,7 +115,7 @@ class RigRemover {
     return animated;
   }
 
-  // Where a node stands from now on: as in the bind pose, and a skinned one where its skin had its mesh.
+  // A node's new world transform: that of the bind pose, or, for a skinned one, that of the mesh in its skin.
   Affine transformOf(Index n) const {
     const gltf::Node& placed = node(n);
     const Affine transform = placed.skin && placed.mesh ? pose_.skinToWorld[*placed.skin] : pose_.nodeWorld[n];
@@ -128,7 +128,7 @@ class RigRemover {
     for (const Index n : graph_.allNodes) {
       if (!keep[n]) continue;
       const Affine above = graph_.parent[n] ? world[*graph_.parent[n]] : Affine::Identity();
-      const Affine stays = above * graph_.local[n];  // where it stands if its own transform is left as it is
+      const Affine stays = above * graph_.local[n];  // its world transform if its own transform is left as it is
       const Affine transform = transformOf(n);
       const Affine local = above.inverse(Eigen::Affine) * transform;
       if (near(transform, stays) || !local.matrix().allFinite()) {

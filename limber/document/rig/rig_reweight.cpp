@@ -128,7 +128,7 @@ class Reweighter {
     return n.has_value();
   }
 
-  // Node -> its place in `joints`, kNoIndex where it is not there.
+  // Node -> its index in `joints`, kNoIndex where it is not there.
   std::vector<Index> inverted(const std::vector<Index>& joints) const {
     std::vector<Index> result(graph_.nodeCount(), kNoIndex);
     for (Index j = 0; j < joints.size(); ++j) result[joints[j]] = j;

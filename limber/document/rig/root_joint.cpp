@@ -59,7 +59,7 @@ bool keepsForm(const Affine& frame, Transform& parts) {
               "write the clips by limber convert first, which brings them to joints alone");
 }
 
-// At the world's origin and turned as the world, below a node that stands at `frame`.
+// The local transform, below a node at `frame`, of a node at the world's origin with the world's orientation.
 Affine localOfRoot(const Asset& asset, std::optional<Index> parent, const Affine& frame) {
   const Affine inverse = frame.inverse(Eigen::Affine);
   if (!inverse.matrix().allFinite()) {
@@ -127,7 +127,7 @@ void changeChannels(Asset& asset, const SkeletonRoot& root) {
   }
 }
 
-// Takes the roots off what they hang on; the new node comes in the place of the first.
+// Removes the roots from their parents' children; the new node takes the list position of the first.
 void hangRoots(gltf::Document& document, const SceneGraph& graph, const std::vector<SkeletonRoot>& roots,
                std::optional<Index> parent, Index node) {
   const auto isRoot = [&](Index n) {
@@ -187,7 +187,7 @@ AssetSkeleton below(AssetSkeleton skeleton, Joint root, Index node) {
   return skeleton;
 }
 
-// The only root, where it stands as one for engines does.
+// The only root, where it lies on the ground at the origin, as engines expect it.
 std::optional<Index> rootOnGround(const Skeleton& skeleton) {
   const std::vector<Joint>& joints = skeleton.joints;
   const auto isRoot = [](const Joint& joint) { return !joint.parent; };

@@ -6,8 +6,8 @@
 
 namespace limber {
 
-// Where the joints of a skin lie below several roots of the nodes' tree, puts a node without a transform above these,
-// one for all skins, in their place in the default scene. Its name is new among `names`.
+// Where the joints of a skin lie below several roots of the nodes' tree, adds one node without a transform for all
+// skins as the parent of these roots, replacing them in the default scene. Its name is new among `names`.
 void joinSkinRoots(gltf::Document& document, UniqueNames& names);
 
 }  // namespace limber

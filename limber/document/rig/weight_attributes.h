@@ -22,7 +22,7 @@ inline constexpr Index kMaxSkinJoints = 65536;  // of one skin: joint indices ar
 gltf::Attributes addWeightAccessors(Asset& asset, const PrimitiveInstance& source, const SkinWeights& weights,
                                     std::span<const Index> skinJointOf, Index skinJointCount);
 
-// The same, put into a primitive in place of the weights that it had.
+// The same, written to a primitive to replace its weights.
 struct AttributeTarget {
   Index mesh = 0, primitive = 0;
 };

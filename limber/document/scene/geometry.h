@@ -1,4 +1,4 @@
-// The triangles of an Asset's scene in world space, with the way back to each vertex.
+// The triangles of an Asset's scene in world space, with a map back to each vertex.
 #pragma once
 
 #include <vector>

@@ -186,7 +186,7 @@ TEST(CollectGeometry, GpuInstancesAreShownOneByOne) {
   EXPECT_EQ(errorCodeOf(uneven), ErrorCode::kBadData);
 }
 
-// --- what skins place ---
+// --- what skins position ---
 
 // A mesh on two joints, the second a unit above the first.
 struct SkinnedScene {

@@ -37,7 +37,7 @@ TEST(GridStep, FloatsThatWereDecodedFromAGridShowIt) {
   }
 }
 
-// The way to store 14 bits in normalised 16: the upper bits once more below.
+// Stores 14 bits in normalised 16: the upper bits are repeated in the lowest ones.
 TEST(GridStep, AGridThatIsCoarserThanTheIntegersShowsInThem) {
   const auto grid = [](double value) {
     const auto level = static_cast<int>(std::round(std::abs(0.8 * value) * 8191));

@@ -8,9 +8,9 @@
 
 namespace limber {
 
-// Puts what the scenes show below new nodes that turn it about the world's origin, one for each scene that shows
+// Puts the content of the scenes below new nodes that rotate it about the world's origin, one for each scene that shows
 // something else. A document without scenes gets one. Skinned meshes at a scene's root stay there: only their joints
-// place them.
+// position them.
 void turnScene(Asset& asset, const Quat& turn, const std::string& name);
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// What readers of arrays in SMPL's layout share: each refusal names the array.
+// What readers of arrays in SMPL's layout have in common: each error names the array.
 #pragma once
 
 #include <string>

@@ -256,7 +256,7 @@ class JointTurns {
  public:
   void add(const Quat& rotation, std::size_t frame) {
     Eigen::Quaternionf value = rotation.cast<float>();
-    // q and -q are one rotation, but not the same way there.
+    // q and -q are the same rotation, but interpolation to them takes different paths.
     if (frame > 0 && values_.back().coeffs().dot(value.coeffs()) < 0) value.coeffs() = -value.coeffs();
     if (frame > 0 && values_.size() == 1) {
       if (value.coeffs() == values_.front().coeffs()) return;

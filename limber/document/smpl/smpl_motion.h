@@ -34,14 +34,14 @@ struct SmplOptions {
 // Other arrays are not looked at.
 //
 // Rest pose: with a body its own, which has the motion's number of joints or shares the first 22 with it; the pelvis
-// rests where it is there. Without one, smplSkeleton's; as nobody tells then where the pelvis rests, the clip is raised
-// or lowered as a whole until the lowest joint of all frames is as high as that of the rest pose.
+// rests where it is there. Without one, smplSkeleton's; as the pelvis's rest position is then unknown, the clip is
+// raised or lowered as a whole until the lowest joint of all frames is as high as that of the rest pose.
 //
-// Warnings: "converted-axes" (another axis up turned to Y up), "upside-down" (heads are below ankles in all frames),
+// Warnings: "converted-axes" (another up axis converted to Y up), "upside-down" (heads are below ankles in all frames),
 // "hand-components" (hands as another number of values than 45: the components of a model, left at rest), "bad-numbers"
-// (not finite, or too large: the frame before stands in), "frame-rate". Throws Error kBadData naming the array: none of
-// poses, of another shape than the above, of other numbers of frames, no frame; kLimit beyond 2^22 frames; kUnsupported
-// as readNpy does; where() begins with `name`.
+// (not finite, or too large: replaced by the previous frame), "frame-rate". Throws Error kBadData naming the array:
+// none of poses, of another shape than the above, of other numbers of frames, no frame; kLimit beyond 2^22 frames;
+// kUnsupported as readNpy does; where() begins with `name`.
 Motion readSmplMotion(const NpzFiles& arrays, std::string_view name, const SmplOptions& options = {});
 
 // The same from the archive (readSmplArrays).

@@ -62,7 +62,7 @@ std::vector<Vec3> positionsAt(const Motion& motion, double seconds) {
   return posePositions(motion.skeleton, pose);
 }
 
-// Frames of a person standing with that axis up, who turns all joints a little, each in its own way.
+// Frames of a person standing with that axis up, who rotates all joints a little, each differently.
 std::vector<double> swayingPoses(std::size_t frames, std::size_t joints, UpAxis up) {
   const Mat3 upright = uprightTurn(up).conjugate().toRotationMatrix();
   std::vector<double> values;
@@ -146,7 +146,7 @@ TEST(SmplMotion, FramesUpsideDownAreReportedAndTurnedOnRequest) {
   }
 }
 
-// The lowest joint of all frames is as high as the toes at rest; the way over the ground is trans's.
+// The lowest joint of all frames is as high as the toes at rest; the displacement over the ground is trans's.
 TEST(SmplMotion, StandsOnTheGround) {
   const Motion motion = readSmplMotion(swaying(22), "sway.npz");
   double lowest = 1e9;

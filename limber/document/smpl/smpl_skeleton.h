@@ -21,10 +21,10 @@ bool isSmplJointCount(std::size_t joints);
 // above "joint_00", ...
 std::vector<std::string> smplJointNames(std::size_t joints);
 
-// A person of 1.70 m in the models' rest pose: a T-pose that stands on y = 0 and faces +Z, the joints' frames those of
-// the world. Its proportions are not a model's, which nobody may hand on, but the lengths of segments by Drillis and
-// Contini (D. A. Winter, Biomechanics and Motor Control of Human Movement, 4th edition 2009, figure 4.1). Throws Error
-// kBadArgument for other counts than those above.
+// A person of 1.70 m in the models' rest pose: a T-pose with its feet on y = 0, facing +Z, the joints' frames aligned
+// with the world. Its proportions are not a model's, which nobody may redistribute, but the lengths of segments by
+// Drillis and Contini (D. A. Winter, Biomechanics and Motor Control of Human Movement, 4th edition 2009, figure 4.1).
+// Throws Error kBadArgument for other counts than those above.
 Skeleton smplSkeleton(std::size_t joints);
 
 // That of a body in SMPL's layout of arrays (pipeline/smpl_body.h) whose vertices are these (#V): joints are

@@ -5,7 +5,7 @@
 
 namespace limber {
 
-// One block, the longest match that a table of the last places finds taken at once. Throws Error kLimit above 2 GB,
+// One block; takes greedily the longest match found by a table of recent positions. Throws Error kLimit above 2 GB,
 // which is more than one block may hold. Cost: O(#bytes).
 Bytes encodeLz4Block(ByteSpan bytes);
 

@@ -87,7 +87,7 @@ class Numbering {
   std::vector<Thing> things_;
 };
 
-// A place in the tree of paths: a prim or one of its properties.
+// A node in the tree of paths: a prim or one of its properties.
 struct PathNode {
   std::int32_t token = 0;  // of the name; negative for a property
   std::int32_t jump = 0;   // see jumpOf
@@ -219,7 +219,7 @@ class CrateWriter {
     return kIsInlined | static_cast<std::uint64_t>(type) << 48 | value;
   }
 
-  // Bytes at a place of their own, once.
+  // Stores bytes out of line; equal ones are stored once.
   std::uint64_t stored(CrateType type, std::uint64_t flags, const Bytes& bytes) {
     const std::string content(bytes.begin(), bytes.end());
     std::uint64_t& rep = stored_[static_cast<std::uint64_t>(type) << 48 | flags][content];

@@ -24,7 +24,7 @@ UsdStage emptyStage() {
   return stage;
 }
 
-// Numbers that lie at the place that 64 bits of a field name, behind their count.
+// The numbers at the offset that the 64 bits of a field give, after their count.
 template <typename Number>
 std::vector<Number> listAt(const Bytes& crate, std::uint64_t rep) {
   std::uint64_t count = 0;

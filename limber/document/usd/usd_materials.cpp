@@ -82,7 +82,7 @@ class MaterialWriter {
     return fmt::format("{}/{}.outputs:result", path_, name);
   }
 
-  // The path of what reads the texture's place on the surface.
+  // The path of the output that gives the texture's coordinates.
   std::string locationOf(const UsdTexture& texture, const std::string& textureName) {
     const std::string primvar = uvPrimvar(texture.uvSet);
     std::string uv = reader("Uv" + primvar.substr(2), "float2", primvar, {});
@@ -97,7 +97,7 @@ class MaterialWriter {
     return fmt::format("{}/{}.outputs:result", path_, name);
   }
 
-  // The path of a texture's outputs, without their names; the same texture read in the same way is there once.
+  // The path of a texture's outputs, without their names; equal uses of a texture have one shader.
   std::string textureShader(const UsdTexture& use, const std::string& image, const std::string& inputName) {
     for (std::size_t i = 0; i < textures_.size(); ++i) {
       if (uses_[i] == use) return fmt::format("{}/{}.outputs:", path_, textures_[i].name);

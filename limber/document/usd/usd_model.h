@@ -19,7 +19,7 @@ struct UsdShape {
   std::vector<int> vertices;         // of the mesh
   std::vector<Vec3f> offsets;        // in the world, as many as vertices
   std::vector<Vec3f> normalOffsets;  // as many, or none
-  Track<float> weight;               // over time in seconds; one key where it stands still
+  Track<float> weight;               // over time in seconds; one key where it is constant
 };
 
 // A primitive as one node shows it, in the world of the bind pose: the vertices that have triangles.

@@ -15,11 +15,11 @@ class UsdMotion {
   bool isNeeded() const;
   // The clip's frame rate where that is a whole number, so that keys lie at whole time codes.
   double timeCodesPerSecond() const { return timeCodesPerSecond_; }
-  // The last moment of all, in seconds; 0 where everything stands still.
+  // The time of the last key of all, in seconds; 0 where nothing is animated.
   double duration() const;
 
-  // The prim "Motion": joints and weights of blend shapes, sampled at the keys of what moves, but where interpolation
-  // between the neighbours gives the same; each once where it stands still.
+  // The prim "Motion": joints and weights of blend shapes, sampled at the keys of what moves, except where
+  // interpolation between the neighbours gives the same; each once where it is constant.
   UsdPrim prim() const;
 
  private:

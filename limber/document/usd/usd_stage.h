@@ -1,4 +1,4 @@
-// A USD stage as data: prims, their properties and what stands below them. usd_text.h and usd_crate.h write it.
+// A USD stage as data: prims, their properties and their children. usd_text.h and usd_crate.h write it.
 #pragma once
 
 #include <optional>
@@ -12,7 +12,7 @@
 
 namespace limber {
 
-// The prim that everything else stands below.
+// The prim that everything else is below.
 inline constexpr std::string_view kUsdRoot = "Model";
 // Those that may stand directly below it beside the meshes.
 inline constexpr const char *kUsdSkeleton = "Skeleton", *kUsdMaterials = "Materials";

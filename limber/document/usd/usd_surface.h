@@ -49,7 +49,7 @@ struct UsdSurface {
 };
 
 // With KHR_texture_transform and KHR_materials_unlit, _emissive_strength, _ior, _clearcoat, _pbrSpecularGlossiness.
-// Throws Error kBadData, with the place ("materials[3]"), where an extension breaks its format.
+// Throws Error kBadData, with the path ("materials[3]"), where an extension breaks its format.
 UsdSurface usdSurface(const gltf::Document& document, Index material);
 
 }  // namespace limber

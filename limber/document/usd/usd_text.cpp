@@ -8,7 +8,7 @@ namespace limber {
 
 namespace {
 
-// A label as it stands in quotes.
+// A label as it is written in quotes.
 std::string escaped(std::string_view label) {
   std::string result;
   for (const char c : label) {

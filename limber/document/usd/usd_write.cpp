@@ -201,7 +201,7 @@ Warnings writeUsd(const Asset& asset, const std::filesystem::path& path, UsdOpti
   options.imageStem = path.stem().string() + "_image";
   const UsdFiles files = usdFiles(asset, options);
   for (const UsdFiles::Image& image : files.images) outputs.push_back({path.parent_path() / image.path, image.bytes});
-  outputs.push_back({path, files.stage});  // last, so that it never stands there without what it refers to
+  outputs.push_back({path, files.stage});  // last, so that it never exists without what it refers to
   writeFiles(outputs);
   return files.warnings;
 }

@@ -19,7 +19,8 @@ struct UsdOptions {
   UsdForm form = UsdForm::kCrate;
 };
 
-// A surface that stands still: points and unit normals in the world, as many as collectGeometry(asset) has positions.
+// A surface that is not animated: points and unit normals in the world, as many as collectGeometry(asset) has
+// positions.
 struct UsdStillSurface {
   std::span<const Vec3f> points, normals;
 };

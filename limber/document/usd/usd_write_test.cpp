@@ -36,7 +36,7 @@ std::string textOf(const Asset& asset, UsdOptions options = {}) {
   return textOf(usdFiles(asset, options));
 }
 
-// How often a text stands in another.
+// How often a text occurs in another.
 std::size_t timesIn(const std::string& text, const std::string& part) {
   std::size_t times = 0;
   for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++times;

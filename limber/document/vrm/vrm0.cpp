@@ -62,7 +62,7 @@ Json lookAtOf(const Json& old, Warnings& warnings) {
   const Json& offset = partOf(old, "firstPersonBoneOffset");
   Json lookAt = {{"type", byExpression ? "expression" : "bone"}};
   lookAt["offsetFromHeadBone"] = {numberIn(offset, "x", 0), numberIn(offset, "y", 0.06),
-                                  0.0 - numberIn(offset, "z", 0)};  // Unity's Z is the other way round
+                                  0.0 - numberIn(offset, "z", 0)};  // Unity's Z points in the opposite direction
   std::size_t curves = 0;
   const std::pair<const char*, const char*> kMaps[] = {{"rangeMapHorizontalInner", "lookAtHorizontalInner"},
                                                        {"rangeMapHorizontalOuter", "lookAtHorizontalOuter"},

@@ -5,14 +5,14 @@
 
 namespace limber {
 
-// Puts VRMC_vrm, VRMC_springBone and VRMC_materials_mtoon in the place of the extension "VRM": bones, meta
-// (vrm_meta.h), expressions, what the wearer sees, gaze, springs with their colliders, MToon materials. Nothing where
-// the document has no such extension. A model of VRM 0.x faces -Z; all that the scene shows is turned half round by a
-// node above it, so that joints, vertices and clips stay as they are.
+// Replaces the extension "VRM" with VRMC_vrm, VRMC_springBone and VRMC_materials_mtoon: bones, meta (vrm_meta.h),
+// expressions, what the wearer sees, gaze, springs with their colliders, MToon materials. Does nothing where the
+// document has no such extension. A model of VRM 0.x faces -Z; a node above all that the scene shows rotates it by half
+// a turn, so that joints, vertices and clips stay as they are.
 //
-// What 1.0 has no place for is left out with warnings: "vrm0-curves" (gaze by curves), "vrm0-materials" (shaders other
-// than MToon, unlit ones and glTF's: these stay as glTF shows them), "vrm0-expressions" (what they change of a material
-// and 1.0 cannot).
+// What 1.0 cannot represent is left out with warnings: "vrm0-curves" (gaze by curves), "vrm0-materials" (shaders other
+// than MToon, unlit ones and glTF's: these stay as glTF shows them), "vrm0-expressions" (material changes that 1.0
+// lacks).
 //
 // VRM 0.x: vrm-specification/specification/0.0; where that is silent, as three-vrm and UniVRM read it.
 void upgradeVrm0(Asset& asset);

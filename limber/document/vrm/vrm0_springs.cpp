@@ -41,7 +41,7 @@ class SpringMaker {
   }
 
  private:
-  // Offsets are written as Unity has them, whose Z is the other way round; the node's own axes turn with it.
+  // Offsets are in Unity's coordinates, whose Z points in the opposite direction; the node's own axes rotate with it.
   void addColliders() {
     for (const Json& group : listIn(animation_, "colliderGroups")) {
       Json numbers = Json::array();

@@ -213,7 +213,7 @@ TEST(Vrm0, MToonGoesOn) {
   const Asset asset = upgraded(oldAvatar());
   const gltf::Material& skin = asset.document.materials[0];
   const Json& mtoon = *extensionOf(skin, "VRMC_materials_mtoon");
-  EXPECT_NEAR(mtoon["shadingToonyFactor"].get<double>(), 0.95, 1e-6);  // from 0.8 three quarters of the way to 1
+  EXPECT_NEAR(mtoon["shadingToonyFactor"].get<double>(), 0.95, 1e-6);  // 0.8 moved three quarters of the distance to 1
   EXPECT_NEAR(mtoon["shadingShiftFactor"].get<double>(), -0.55, 1e-6);
   EXPECT_NEAR(mtoon["outlineWidthFactor"].get<double>(), 0.005, 1e-9);  // half a centimetre
   EXPECT_EQ(mtoon["outlineWidthMode"], "worldCoordinates");
@@ -246,7 +246,7 @@ TEST(Vrm0, AnOldAvatarIsWrittenAsANewOne) {
   EXPECT_EQ(extensionOf(old.asset.document, "VRMC_vrm")->at("meta").at("name"), "Old");
 }
 
-// Whatever stands in the place of a member: an answer, or an error of limber's.
+// Whatever replaces a member, the result is an answer or an error of limber's.
 TEST(Vrm0, OddMembersBreakNothing) {
   const OldAvatar old = oldAvatar();
   const std::vector<Json> odd = {Json(), Json(1e30), Json("text"), Json::array({Json::array(), 3})};

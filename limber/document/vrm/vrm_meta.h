@@ -23,9 +23,9 @@ struct VrmMeta {
 // What can be allowed: "everyone", "violence", ...
 std::vector<std::string> vrmPermissions();
 
-// "meta" of VRMC_vrm 1.0. `kept` is that of the model as it was read, none: null. What a user says stands in the place
-// of names, authors and addresses there; permissions of a model that has some are not changed. What must be there and
-// nobody has said is marked as to be filled in, with a warning "vrm-meta".
+// "meta" of VRMC_vrm 1.0. `kept` is that of the model as it was read, none: null. What the user gives replaces the
+// names, authors and addresses there; permissions of a model that has some are not changed. Required fields that nobody
+// has given are marked as to be filled in, with a warning "vrm-meta".
 //
 // Throws Error kBadArgument where permissions are given for a model that has its own, or a permission is unknown.
 Json vrmMeta(const VrmMeta& said, const Json* kept, std::string_view modelName, Warnings& warnings);

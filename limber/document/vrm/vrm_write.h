@@ -16,7 +16,7 @@ namespace limber {
 //   meta         vrmMeta
 //
 // So does a VRM whose bones are gone (it was rigged anew), which keeps its meta. One that was posed (restsInTPose)
-// stands in T-pose again. Warnings are added to the asset's: those of vrmBones and vrmMeta, "vrm-pose" where that pose
+// returns to the T-pose. Warnings are added to the asset's: those of vrmBones and vrmMeta, "vrm-pose" where that pose
 // is lost, or one of another model's nodes that is neither its bind pose nor how a clip begins, "vrm-scales" where
 // nodes have scales that differ by axis, which VRM forbids. Clips stay in the file; VRM does not use them, motions for
 // VRMs are files of their own (vrma_write.h).

@@ -138,7 +138,8 @@ class AnimationMaker {
     }
   }
 
-  // How a bone's rotation, or the hips' place, goes from key to key: as its joint does where that is the only one.
+  // The keys of a bone's rotation, or of the hips' position, with interpolation: its joint's where that is the only
+  // one.
   struct Keys {
     std::set<float> times;
     Interpolation interpolation = Interpolation::kLinear;
@@ -349,7 +350,7 @@ std::optional<Track<float>> trackOf(const Asset& asset, const gltf::Animation& a
   return common;
 }
 
-// Such a file has a place of its own for gaze ("lookAt"), and forbids it elsewhere.
+// Such a file has a field of its own for gaze ("lookAt"), and forbids it elsewhere.
 bool isEye(std::string_view bone) {
   return bone == "leftEye" || bone == "rightEye";
 }

@@ -25,12 +25,12 @@ struct ExpressionTrack {
 std::vector<ExpressionTrack> expressionTracks(const Asset& asset, Index animation);
 
 // One clip as nodes without a mesh: a node for each bone, as `rest` has them but without rotations; rotations of all
-// bones, and the way of the hips. Rotations are those of whole bones: what joints between two bones do is part of the
-// lower one's. Keys are the clip's own; where those of several joints meet in a bone, or curves are cubic, between them
-// 60 times a second. Other joints, lengths and scales that change have no place in such a file: a warning
-// "vrma-lengths" of the asset's where joints of bones are for that more than 0.001 of the skeleton's size from where
-// the clip has them, with the largest distance in metres. Nor have eyes and the expressions lookUp, lookDown, lookLeft
-// and lookRight: a warning "vrma-gaze" where the clip moves some.
+// bones, and the trajectory of the hips. Rotations are those of whole bones: what joints between two bones do is part
+// of the lower one's. Keys are the clip's own; where those of several joints meet in a bone, or curves are cubic, 60
+// keys a second are added between them. Such a file cannot represent other joints or animated lengths and scales: a
+// warning "vrma-lengths" is added to the asset's where joints of bones are therefore more than 0.001 of the skeleton's
+// size from their positions in the clip, with the largest distance in metres. Nor can it represent eyes and the
+// expressions lookUp, lookDown, lookLeft and lookRight: a warning "vrma-gaze" where the clip moves some.
 //
 // bones  vrmBones of the clip's skeleton
 Asset vrmAnimation(const Skeleton& skeleton, const Clip& clip, const TPose& rest, std::span<const HumanoidJoint> bones,

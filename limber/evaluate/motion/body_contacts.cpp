@@ -18,7 +18,7 @@ constexpr double kPalm = 0.1;        // of a hand's thickness at the wrist's joi
 constexpr std::size_t kMoving = 30;  // frames into the pose and back
 constexpr double kFramesPerSecond = 30;
 
-// A place on the surface: along a bone, and about it from ahead (+Z of the bone's joint) to the left (+X), radians.
+// A point on the surface: along a bone, and about it from ahead (+Z of the bone's joint) to the left (+X), radians.
 struct SurfaceAnchor {
   std::string from, to;
   double along = 0, about = 0;
@@ -86,7 +86,7 @@ Vec3 positionOf(const SurfaceAnchor& point, const Skeleton& body, const std::vec
   return a + point.along * bone + radius * out;
 }
 
-// Elbows down and out, as they are held.
+// With the elbow down and out, as people hold it.
 void reach(const Skeleton& body, const std::string& side, const Vec3& goal, Pose& pose) {
   const Index upper = jointOf(body, side + "UpperArm"), lower = jointOf(body, side + "LowerArm"),
               hand = jointOf(body, side + "Hand");

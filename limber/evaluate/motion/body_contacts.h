@@ -29,14 +29,14 @@ struct BodyContact {
 };
 std::array<BodyContact, 5> bodyContacts();
 
-// From standing into the pose, held for `kHeldFrames`, and back, 30 frames a second. Hands that do not reach come as
-// near as they can.
+// From standing into the pose, which lasts for `kHoldFrames`, and back, 30 frames a second. Hands that do not reach
+// come as near as they can.
 PoseSequence contactMotion(const Skeleton& figure, const BodyContact& contact);
 
 struct ContactScore {
-  double reached = 0, farReached = 0;  // hands whose place is within the arm's reach, and those farther off
-  double kept = 0;                     // of `reached`: within kKept of their place in the middle of the hold
-  double worst = 0;                    // of `reached`: distance from the place over the body's height
+  double reached = 0, farReached = 0;  // hands whose target is within the arm's reach, and those farther off
+  double kept = 0;                     // of `reached`: within kKept of their target in the middle of the hold
+  double worst = 0;                    // of `reached`: distance from the target over the body's height
   double farWorst = 0;                 // of the others: from the nearest point that the arm reaches, likewise
 };
 inline constexpr double kKept = 0.02;  // heights

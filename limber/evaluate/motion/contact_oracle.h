@@ -1,5 +1,5 @@
-// When a point of a body rests, read off a whole motion: the detector of the judge (retarget_judge.h), which shares
-// nothing with what retargeting detects by.
+// When a point of a body rests, read off a whole motion: the detector of the judge (retarget_judge.h), which has no
+// code in common with the contact detection of retargeting.
 #pragma once
 
 #include <span>

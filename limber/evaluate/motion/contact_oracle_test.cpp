@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kFrame = 1.0 / 60;
 
-// Stands for 30 frames, swings for 20 at that speed (heights a second), stands for 30 more.
+// Rests for 30 frames, swings for 20 at that speed (heights a second), rests for 30 more.
 std::vector<Vec3> stepped(double speed) {
   std::vector<Vec3> path;
   Vec3 at = Vec3::Zero();

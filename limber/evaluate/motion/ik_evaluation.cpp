@@ -94,7 +94,7 @@ IkProblem chainProblem(const IkProblemSet& set, ProblemRandom& random) {
   return problem;
 }
 
-// Poses half way from rest to a random one: people do not tie themselves in knots.
+// Poses midway from rest to a random one: people do not tie themselves in knots.
 IkProblem humanoidProblem(const IkProblemSet& set, const JointLimits& anatomy, ProblemRandom& random) {
   IkProblem problem;
   problem.start = startPose(set.skeleton, set.limits);

@@ -86,7 +86,7 @@ std::string timeLine(const PlotAxes& axes, std::span<const IkScore> scores, cons
 // What was aimed at, and where the table has it.
 struct Goal {
   std::string_view what, method, set;
-  double wantedMicros;  // 0: a share is wanted
+  double wantedMicros;  // 0: the goal is a fraction
   double targetFraction;
   std::string_view elsewhere;
 };

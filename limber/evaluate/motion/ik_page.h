@@ -8,7 +8,7 @@
 
 namespace limber {
 
-// A chart of the share solved: a row for each set of problems, a column for each method. SVG.
+// A chart of the fraction solved: a row for each set of problems, a column for each method. SVG.
 std::string ikSolvedPlot(std::span<const IkScore> scores);
 
 // The median time of a solve over the number of joints, a line for each method, both axes logarithmic: chains with

@@ -19,8 +19,8 @@ struct AnswerScore {
 // themselves only. `mostFrames` of each clip.
 std::vector<AnswerScore> scoreAnswers(const RetargetTrial& trial, Progress& progress, Warnings& skipped);
 
-// In Markdown: a line for each measure, for each method two columns, of what constants may be set by and of what is
-// held out (a pair is, where its motion or its character is): means, worst values in brackets. Below it how contacts of
+// In Markdown: a line for each measure, for each method two columns, of pairs by which constants may be tuned and of
+// held-out pairs (whose motion or character is held out): means, worst values in brackets. Below it how contacts of
 // the body with itself are kept (scoreContact). `scores` with verdicts (RetargetTrial::judge).
 std::string judgeTable(std::span<const RetargetScore> scores, std::span<const AnswerScore> answers);
 std::string answersTsv(std::span<const AnswerScore> answers);

@@ -104,7 +104,7 @@ double errorOfAnswer(const RetargetMethod& method, const Skeleton& motion, const
                             &source);
   const PoseSequence result = to.original(retargetFrames(method, setup, source));
   const double height = standingHeight(setup, MapSide::kTarget);
-  // A recording's ground need not be where its rest pose stands; what is put on another body is put on that one's.
+  // A recording's ground need not be that of its rest pose; a retargeted motion is put on the target's ground.
   const Vec3 ground = (setup.targetGround - answer.scale * setup.sourceGround) * Vec3::UnitY();
   double worst = 0;
   for (std::size_t f = 0; f < frames.poses.size(); ++f) {

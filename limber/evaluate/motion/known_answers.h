@@ -1,4 +1,4 @@
-// Motions whose answer is known because code made the body: the motion's own, changed in ways that leave open nothing.
+// Motions whose correct result is known because code made the body: the motion's own, with unambiguous changes.
 #pragma once
 
 #include <string_view>

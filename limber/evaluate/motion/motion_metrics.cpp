@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kPlantedHeight = 0.03, kPlantedSpeed = 0.15;  // heights, heights a second
 constexpr double kPlantedSeconds = 0.1;
-constexpr double kSeenSeconds = 1.0 / 30;  // to each side of a frame, when telling whether a joint stands still
+constexpr double kSeenSeconds = 1.0 / 30;  // to each side of a frame, when detecting whether a joint rests
 
 using Positions = std::vector<std::vector<Vec3>>;  // of each frame, #J
 
@@ -32,7 +32,7 @@ Positions positionsOf(const BodyKinematics& kinematics, const PoseSequence& fram
   return positions;
 }
 
-// What stands on the ground, pairwise.
+// The joints of feet and toes, pairwise.
 std::vector<Index> standingJoints(const RetargetSetup& setup, MapSide side) {
   if (setup.person) return soleJoints(setup.map, side);
   std::vector<Index> joints;

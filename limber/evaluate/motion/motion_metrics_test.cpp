@@ -16,7 +16,7 @@ constexpr double kSeconds = 1.0 / 60;
 
 class MotionMetricsOf : public ::testing::Test {
  protected:
-  // A person who stands still, moved by `way` in each frame.
+  // A person in rest pose, at `position` and moved by `displacement` in each frame.
   PoseSequence standing(const Vec3& position, const Vec3& displacement = Vec3::Zero()) const {
     PoseSequence frames{std::vector<Pose>(40, restPose(person_)), kSeconds};
     for (std::size_t f = 0; f < frames.poses.size(); ++f) {
@@ -129,7 +129,7 @@ TEST_F(MotionMetricsOf, UnevenScalesCountAsTheFileShowsThem) {
   EXPECT_GT(jointErrorOf(setup, even, even, nullptr, &joints).global, 0);
 }
 
-// The same angles on other proportions are as smooth, whatever the joints' ways are.
+// The same angles on other proportions are as smooth, whatever the joints' paths are.
 TEST_F(MotionMetricsOf, JerkIsThatOfTheBonesOnAnyProportions) {
   Skeleton uneven = person_;
   for (const std::string side : {"left", "right"}) {

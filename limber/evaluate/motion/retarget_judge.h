@@ -20,7 +20,7 @@ struct RetargetVerdict {
   ContactAgreement contacts;              // of the feet's points, source against result
   double bones95 = 0;  // degrees between a limb's bone and that of `aligned`, 95th percentile, of arms whose hand and
                        // legs whose foot touches nothing in the source
-  // Share of the surface inside the body (self_penetration.h); none without a skin.
+  // Fraction of the surface inside the body (self_penetration.h); none without a skin.
   std::optional<double> inside, alignedInside;
 };
 

@@ -20,7 +20,7 @@ struct RetargetScore {
   MotionMetrics metrics;
   double framesPerSecond = 0;              // of the method, on one thread
   bool heldOut = false;                    // no constant is set by it (held_out.h)
-  std::optional<double> inside;            // mean share of the surface inside the body, of a character with a skin
+  std::optional<double> inside;            // mean fraction of the surface inside the body, of a character with a skin
   std::optional<RetargetVerdict> verdict;  // where RetargetTrial::judge
 };
 

@@ -98,7 +98,7 @@ BodyFigure figureOf(const Skeleton& skeleton, const std::vector<bool>& counts) {
     if (counts[j]) box.add(globals[j].translation());
   }
   BodyFigure figure;
-  std::vector<std::optional<Index>> kept(skeleton.jointCount());  // a joint's place in the figure
+  std::vector<std::optional<Index>> kept(skeleton.jointCount());  // a joint's index in the figure
   std::vector<std::optional<Index>> above;
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
     if (!counts[j]) continue;

@@ -1,4 +1,4 @@
-// Which joints of an artist's skeleton are the body, and which are only held, worn or steered with.
+// Which joints of an artist's skeleton are the body, and which are only of props, accessories or controls.
 #pragma once
 
 #include <vector>
@@ -11,10 +11,10 @@ namespace limber {
 // of a person by their names, and those between two such. #J
 std::vector<bool> countedJoints(const SkinnedModel& model);
 
-// What is left of `counted` without the parts that a template has no joints for, told by names alone:
-// - fingers, and all else that hangs on a hand (palms, things held);
-// - what hangs on a head (eyes, jaws, ears, hair, noses, horns), and ears that hang elsewhere;
-// - what hangs on a foot, but for its toes as a whole;
+// What is left of `counted` without the parts that a template has no joints for, identified by names alone:
+// - fingers, and all other descendants of a hand (palms, props);
+// - descendants of a head (eyes, jaws, ears, hair, noses, horns), and ears attached elsewhere;
+// - descendants of a foot, but for its toes as a whole;
 // - ends of chains (tip, end, leaf, nub), breasts, stomachs that swing.
 std::vector<bool> bodyJoints(const Skeleton& skeleton, std::vector<bool> counted);
 
@@ -23,9 +23,9 @@ struct BoneLine {
 };
 
 // Joints and bones as they are compared: model space, rest pose.
-// - Of joints in one place one counts.
-// - A bone leads to each joint from the joint above it that counts. What has none above (feet that inverse kinematics
-//   drives hang on the root) hangs on the joint nearest to it of the tree that has the most joints.
+// - Of joints at one position one counts.
+// - A bone leads to each joint from its nearest ancestor that counts. A joint without one (feet that inverse kinematics
+//   drives are children of the root) is attached to the joint nearest to it of the tree that has the most joints.
 struct BodyFigure {
   std::vector<Vec3> joints;
   std::vector<BoneLine> bones;

@@ -12,7 +12,7 @@
 namespace limber {
 namespace {
 
-// Joints on the axis of the tube from -0.5 to 0.5 along x, 0.2 thick, at these places.
+// Joints on the axis of the tube from -0.5 to 0.5 along x, 0.2 thick, at these positions.
 SkinnedModel tubeWithJoints(const std::vector<double>& along, bool capped = true) {
   SkinnedModel model;
   model.mesh = limber::testing::tube(24, 101, capped);

@@ -7,7 +7,7 @@
 
 namespace limber {
 
-// inside     share of the joints that lie within the surface: a winding number above a half
+// inside     fraction of the joints that lie within the surface: a winding number above a half
 // offCenter  0 where a joint lies in the middle of the limb, 1 where it lies on the surface or outside, mean over the
 //            joints. Of a joint inside: |a - b| / (a + b), mean over eight chords through it at right angles to its
 //            bone that leave the body at a and b (BodyInside); joints without such a chord do not count.

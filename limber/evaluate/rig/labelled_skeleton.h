@@ -48,7 +48,7 @@ std::string hashOf(std::span<const std::byte> bytes);
 // Throws Error kBadData naming a joint that the skeleton does not have.
 LabelledSkeleton labelled(const BodyLabels& labels, Skeleton skeleton);
 
-// Ways in which skeletons of one body differ. Labels go along.
+// Kinds of damage by which skeletons of one body differ. Labels go along.
 enum class Damage {
   kNumbered,
   kMirrored,

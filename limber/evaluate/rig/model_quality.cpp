@@ -41,7 +41,7 @@ SurfaceChange changeOf(const TriMesh& rest, std::span<const Vec3f> posed, std::s
                                 after = textureStretch(uvs, posed, rest.triangles);
     if (before && after) change.texture = *after / *before - 1;
   }
-  // Of open surfaces the volume depends on the origin: then it is the surface's own middle, wherever the model stands.
+  // Of open surfaces the volume depends on the origin: so the origin is the surface's middle, wherever the model is.
   const double side = longestSide(rest), before = volumeAboutMiddle(rest.positions, rest.triangles);
   if (std::abs(before) > kNoVolume * side * side * side) {
     change.volumeLoss = 1 - volumeAboutMiddle(posed, rest.triangles) / before;

@@ -17,10 +17,10 @@ namespace limber {
 // What the surface does in one pose, or in several in the mean.
 struct SurfaceChange {
   SurfaceStretch stretch;
-  // By how much a texture is stretched more than at rest, as a share: L2 stretch over that at rest, less 1. None where
-  // there are no texture coordinates.
+  // By how much a texture is stretched more than at rest, as a fraction: L2 stretch over that at rest, less 1. None
+  // where there are no texture coordinates.
   std::optional<double> texture;
-  double volumeLoss = 0;  // share of the volume at rest, less than 0 where there is more; 0 of what holds next to none
+  double volumeLoss = 0;  // fraction of the volume at rest, less than 0 where there is more; 0 where it is next to none
 };
 
 struct PoseChange {
@@ -38,7 +38,7 @@ struct MotionQuality {
 
 struct ModelQuality {
   Index joints = 0;
-  double idleJoints = 0;  // share of the joints that move nothing (not among countedJoints)
+  double idleJoints = 0;  // fraction of the joints that move nothing (not among countedJoints)
   JointPlacement placement;
   std::optional<double> coverage;   // boneCoverage
   std::optional<double> asymmetry;  // jointAsymmetry

@@ -36,7 +36,7 @@ SkinnedModel capsulePerson() {
   for (Index j = 0; j < model.skeleton.jointCount(); ++j) {
     const auto parent = model.skeleton.joints[j].parent;
     if (!parent || (positions[j] - positions[*parent]).norm() < 0.02) continue;
-    // Radii differ so that no vertices of two capsules lie in one place, which would be welded.
+    // Radii differ so that no vertices of two capsules have one position, which would be welded.
     const double radius = 0.03 + 0.0001 * static_cast<double>(std::min(j, mirrored(model.skeleton, j)));
     limber::testing::addCapsule(model.mesh, positions[*parent], positions[j], radius);
     while (model.weights.vertexCount() < model.mesh.vertexCount()) {
@@ -117,7 +117,7 @@ TEST(ModelQuality, JointsThatMoveNothingAreIdle) {
   EXPECT_NEAR(measureModel(model).idleJoints, (idle + 2) / (count + 2), 1e-12);
 }
 
-// The size and the place of a model change nothing.
+// The size and the position of a model change nothing.
 TEST(ModelQuality, DoesNotDependOnTheUnit) {
   SkinnedModel large = smeared(capsulePerson(), 0.2f);
   for (Vec3f& p : large.mesh.positions) p *= 128;
@@ -147,7 +147,7 @@ SkinnedModel turnedNeck() {
   return model;
 }
 
-// Turned by a, a ring that is half way over by w has an area of 1 - 2 w (1 - w) (1 - cos a) by linear blending: a third
+// Rotated by a, a ring blended with weight w has an area of 1 - 2 w (1 - w) (1 - cos a) by linear blending: a third
 // of 1 - cos a is lost in the mean. By dual quaternions each ring is whole.
 TEST(ModelQuality, TheDeformerDecidesHowMuchVolumeIsLost) {
   const SkinnedModel model = turnedNeck();

@@ -45,7 +45,7 @@ double meanNearest(const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
 }
 
 Index pairsWithin(const std::vector<Vec3>& a, const std::vector<Vec3>& b, double reach) {
-  // Pairs beyond reach cost so much that none is taken in place of one within.
+  // Pairs beyond reach cost so much that none is taken instead of one within.
   const double far = 1e3 * reach * static_cast<double>(a.size() + b.size());
   std::vector<std::vector<double>> costs(a.size(), std::vector<double>(b.size()));
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -86,8 +86,8 @@ std::optional<Vec3> positionOf(std::string_view bone, const std::vector<Humanoid
   return std::nullopt;
 }
 
-// The extent of the box along the axis that comes nearest to the way from feet to head; its longest side where these
-// are not known.
+// The extent of the box along the axis that comes nearest to the direction from feet to head; its longest side where
+// these are not known.
 double heightOf(const Box& box, const std::vector<HumanoidJoint>& named, const std::vector<Affine>& globals) {
   const std::optional<Vec3> head = positionOf("head", named, globals), foot = positionOf("leftFoot", named, globals);
   if (!head || !foot) return box.longestSide();

@@ -8,9 +8,9 @@
 
 namespace limber {
 
-// Distances in percent of the longest side of the truth's bounding box (RigNet: Xu et al. 2020): mean nearest distance
-// both ways, halved. Bones run from joints to their children; 100 points of each count, whatever its length.
-// Joints in one place count once, and feet that inverse kinematics drives hang on their legs (figureOf).
+// Distances in percent of the longest side of the truth's bounding box (RigNet: Xu et al. 2020): mean nearest distances
+// in both directions, averaged. Bones run from joints to their children; 100 points of each count, whatever its length.
+// Joints at one position count once, and feet that inverse kinematics drives are attached to their legs (figureOf).
 // jointToJoint, jointToBone, boneToBone   CD-J2J, CD-J2B, CD-B2B
 // precision, recall, iou                  of joints, paired one to one within 5 % so that the sum of distances is the
 // least;
@@ -25,7 +25,7 @@ struct RigDistances {
 // compared with that of the predicted rig's chest and upper chest that is nearer.
 struct NamedJointError {
   std::string bone;    // VRM 1.0
-  double percent = 0;  // of the truth's height, the extent of its box along the way from feet to head
+  double percent = 0;  // of the truth's height, the extent of its box along the direction from feet to head
 };
 
 struct RigComparison {
@@ -35,12 +35,12 @@ struct RigComparison {
 };
 
 // All joints of the predicted rig count; of the truth those that move vertices, play a bone of a person, or lie between
-// such (countedJoints). Without fingers: of both what bodyJoints leaves, so no face, ears or things held either.
+// such (countedJoints). Without fingers: of both the joints that bodyJoints leaves, so no face, ears or props either.
 // Throws Error kUnsupported where one of the two has no rig.
 RigComparison compareRigs(const SkinnedModel& predicted, const SkinnedModel& truth);
 RigComparison compareRigs(const Asset& predicted, const Asset& truth);
 
-// The share of the joints that lie inside the model's surface: a winding number above a half. Cost: O(#J #F).
+// The fraction of the joints that lie inside the model's surface: a winding number above a half. Cost: O(#J #F).
 double insideFraction(const SkinnedModel& model);
 
 }  // namespace limber

@@ -10,7 +10,7 @@
 namespace limber {
 namespace {
 
-// An ellipsoid, twice as long in x (from -1 to 1) as in y, and joints at these places.
+// An ellipsoid, twice as long in x (from -1 to 1) as in y, and joints at these positions.
 SkinnedModel ellipsoid(const std::vector<Vec3>& positions) {
   SkinnedModel model;
   model.mesh = limber::testing::moved(limber::testing::icosphere(3), {1, 0.5f, 0.7f}, Vec3f::Zero());

@@ -23,7 +23,7 @@ std::string toText(const RigComparison& comparison);
 
 // What a rigger said of its fit.
 struct RigFit {
-  bool isAbstained = false;  // handles in place of a template
+  bool isAbstained = false;  // handles instead of a template
   std::string likeliest;     // of the templates
   double confidence = 0;     // in it, 0 to 1
 };
@@ -36,14 +36,14 @@ struct RigTableRow {
   double seconds = 0;  // to make the rig, reading and writing files left out
 };
 
-// Gives the asset a rig in place of its own.
+// Replaces the asset's rig.
 using Rerig = std::function<RigFit(Asset&)>;
 // Is shown the asset of each row with its new rig.
 using RiggedSeen = std::function<void(const Asset&)>;
 
 // One row for each of the files that has a rig and triangles, in their order. The others are counted in `skipped`:
 // "without-rig", "unreadable", and "not-rigged" where `rerig`, or the comparison of what it made, fails. Given a
-// moment, each stands in that pose (standAt) before it is rigged and compared.
+// time, each is put in its pose then (standAt) before it is rigged and compared.
 std::vector<RigTableRow> compareRigsOf(std::span<const std::filesystem::path> files, const Rerig& rerig,
                                        Progress& progress, Warnings& skipped,
                                        const std::optional<ClipMoment>& moment = std::nullopt,

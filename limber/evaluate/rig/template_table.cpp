@@ -52,7 +52,7 @@ struct Fraction {
   }
 };
 
-// With the interval of Wilson (1927) in which the share lies by 95 %.
+// With the 95 % confidence interval of Wilson (1927).
 std::string fractionText(const Fraction& fraction) {
   if (fraction.all == 0) return "-";
   constexpr double kZ = 1.96;  // standard deviations about 95 % of a normal distribution

@@ -45,7 +45,7 @@ struct RiggerTrial {
   std::string rigger;
   std::string group;  // its split or folder
   RigTableRow row;
-  double inside = 0;  // share of the joints (insideShare)
+  double inside = 0;  // fraction of the joints (insideFraction)
 };
 
 // Means of each group and rigger, side by side in the order in which they come: joints that there are for the artist's,

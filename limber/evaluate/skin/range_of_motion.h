@@ -17,8 +17,8 @@ struct RangeOfMotionPose {
 // knees, ankles; arms up and forward, elbows, wrists; trunk, neck and head bent and turned; tails, wings and fins.
 // All parts of a kind move together. Each goes half as far as a person's can (American Academy of Orthopaedic Surgeons,
 // The clinical measurement of joint motion, 1994); what people do not have goes a right angle, halved likewise. Knees
-// and elbows bend on the way that they are bent at rest. Trunks, necks, tails, wings and fins bend evenly along their
-// joints; fingers, faces and props rest. Empty for a body without any such part.
+// and elbows bend further in the direction in which they are bent at rest. Trunks, necks, tails, wings and fins bend
+// evenly along their joints; fingers, faces and props rest. Empty for a body without any such part.
 //
 // anatomy  of that skeleton, in rest pose
 std::vector<RangeOfMotionPose> rangeOfMotion(const Skeleton& skeleton, const Anatomy& anatomy);

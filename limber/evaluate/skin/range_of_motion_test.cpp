@@ -80,7 +80,7 @@ TEST(RangeOfMotion, BothSidesAreMirrorImages) {
   }
 }
 
-// However a joint's own axes lie, and however the whole stands, the same places are reached.
+// Whatever the joints' own axes and the orientation of the whole, the same positions are reached.
 TEST(RangeOfMotion, DoesNotDependOnTheJointsFrames) {
   const Skeleton person = vrmPerson();
   Skeleton other = person;
@@ -101,7 +101,7 @@ TEST(RangeOfMotion, DoesNotDependOnTheJointsFrames) {
   }
 }
 
-// A dog's forelegs bend at the elbow on the way that they are bent at rest: the angle grows.
+// A dog's forelegs bend at the elbow in the direction in which they are bent at rest: the angle grows.
 TEST(RangeOfMotion, KneesBendFurtherTheWayThatTheyAreBent) {
   const Skeleton dog = limber::testing::dog().skeleton;
   const std::vector<RangeOfMotionPose> poses = rangeOf(dog);

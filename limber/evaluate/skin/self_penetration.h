@@ -15,7 +15,7 @@ struct SelfPenetrationOptions {
   const Deformer* deformer = &kLinearBlendDeformer;  // by which the skin moves
 };
 
-// Shares, 0 to 1, of those vertices that lie outside the body in bind pose.
+// Fractions, 0 to 1, of those vertices that lie outside the body in bind pose.
 struct SelfPenetration {
   double mean = 0, worst = 0;  // over the frames
   std::size_t worstFrame = 0;  // of all the motion's

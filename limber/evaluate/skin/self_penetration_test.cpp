@@ -52,7 +52,7 @@ Pose secondBoxAt(const SkinnedModel& model, const Vec3& position) {
   return pose;
 }
 
-// Pushed in by 2.4 cells, and half a cell to both sides: of each box the end's 8 x 8 places and two rings of 15 are
+// Pushed in by 2.4 cells, and half a cell to both sides: of each box the end's 8 x 8 vertices and two rings of 15 are
 // inside the other, of 386.
 const Vec3 kPushedIn(0.7, 0.0625, 0.0625);
 constexpr double kFraction = (8 * 8 + 2 * 15) / 386.0;

@@ -18,7 +18,7 @@ double areaOf(const std::array<Vec3, 3>& corners) {
   return triangleArea(corners[0], corners[1], corners[2]);
 }
 
-// The value that `share` of the weight lies at or below.
+// The value at or below which `fraction` of the weight lies.
 double weightedQuantile(const std::vector<double>& values, const std::vector<double>& weights, double fraction) {
   std::vector<Index> order(values.size());
   std::iota(order.begin(), order.end(), Index{0});

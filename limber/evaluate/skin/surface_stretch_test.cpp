@@ -112,7 +112,7 @@ TEST(TextureStretch, IsOneWhereTexelsAreSquaresOfOneSize) {
   EXPECT_NEAR(*textureStretch(flatCoordinates(grid, -1, 1), grid.positions, grid.triangles), 1, 1e-6);
 }
 
-// Twice as long one way: the values 2 and 1 have the root mean square sqrt(5 / 2), the mean scale is sqrt(2).
+// Twice as long in one direction: the values 2 and 1 have the root mean square sqrt(5 / 2), the mean scale is sqrt(2).
 TEST(TextureStretch, OfAStretchedSurfaceIsItsClosedForm) {
   const TriMesh grid = flatGrid(5, 4);
   TriMesh longer = grid;

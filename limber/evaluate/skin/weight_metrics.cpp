@@ -141,7 +141,7 @@ void measureDeformation(const PairedSkins& skins, const Skeleton& skeleton, Inde
   }
 }
 
-// Weights of the first vertex at each place stand for the welded one.
+// The welded vertex has the weights of the first vertex at its position.
 void measureSmoothness(const SkinnedModel& truth, const PairedSkins& skins, WeightComparison& report) {
   if (report.unpairedVertices > 0) return;  // vertices of the skins are then not those of the triangles
   const PreparedMesh welded = prepareMesh(truth.mesh.positions, truth.mesh.triangles, truth.stored);

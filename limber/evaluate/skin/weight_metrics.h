@@ -37,7 +37,7 @@ WeightComparison compareWeights(const Asset& result, const Asset& truth);
 // The four strongest influences of each vertex, strongest first, to a sum of 1; all 0 where there was none.
 SkinWeights strongestFour(const SkinWeights& weights);
 
-// Of a vertex of one and a vertex of the other: the sum over joints of |a - b|, 0 to 2. No joint stands twice among a
+// Of a vertex of one and a vertex of the other: the sum over joints of |a - b|, 0 to 2. No joint occurs twice among a
 // vertex's used slots.
 double weightDifference(const SkinWeights& a, Index vertexOfA, const SkinWeights& b, Index vertexOfB);
 

@@ -80,7 +80,7 @@ TEST(CompareWeights, SmoothnessIsTheMeanOverEdges) {
   EXPECT_NEAR(c.smoothness, 6.0 / 5, 1e-6);
 }
 
-// Two squares, each held by a joint; the grid of the second one has moved it off the first.
+// Two squares, each bound to a joint; the grid of the second one has moved it off the first.
 TEST(CompareWeights, SmoothnessGoesAcrossSeamsOfGrids) {
   const std::vector<std::pair<Index, float>> left = {{0, 1.0f}}, right = {{1, 1.0f}};
   SkinnedModel model = strip({left, left, left, left, right, right, right, right});

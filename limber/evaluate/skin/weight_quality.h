@@ -5,7 +5,7 @@
 
 namespace limber {
 
-// islands     what bleeds over gaps: the share of all weight, by area, that a joint has where it is cut off from the
+// islands     bleeding over gaps: the fraction of all weight, by area, that a joint has where it is cut off from the
 //             region of that piece of the surface in which it has the most. 0 to 1. A region is what is joined by edges
 //             whose ends both follow the joint by more than 1/256.
 // influences  joints that a vertex follows by more than 1/256, mean over the vertices that follow any

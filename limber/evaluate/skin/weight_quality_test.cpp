@@ -1,4 +1,4 @@
-// Weights on grids, counted by hand and by a search that shares nothing with the measure.
+// Weights on grids, counted by hand and by a search independent of the measure.
 #include "limber/evaluate/skin/weight_quality.h"
 
 #include <algorithm>

@@ -77,7 +77,7 @@ constexpr Index nodeSlots(Index items) {
 }
 
 // Splits the items top down, in place, so that each leaf's triangles end up side by side. A subtree owns nodeSlots()
-// from its first one on, which makes places independent of the order in which subtrees are built.
+// from its first one on, which makes node indices independent of the order in which subtrees are built.
 class BvhBuilder {
  public:
   BvhBuilder(std::span<Bvh::Item> items, Bvh::Node* nodes) : items_(items), nodes_(nodes) {}
@@ -265,7 +265,7 @@ struct Bvh::Ray {
     shearZ = 1 / direction[kz];
     const float pad = 4 * std::numeric_limits<float>::epsilon() * origin.cast<float>().cwiseAbs().maxCoeff();
     for (int axis = 0; axis < 3; ++axis) {
-      // A tiny number in place of zero keeps 0 * infinity out of the box test.
+      // A tiny number instead of zero keeps 0 * infinity out of the box test.
       const float d = static_cast<float>(direction[axis]);
       const float safe = std::abs(d) > 1e-30f ? d : std::copysign(1e-30f, d);
       originForLo[axis] = all(static_cast<float>(origin[axis]) + pad);

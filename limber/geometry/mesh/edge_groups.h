@@ -11,7 +11,7 @@
 namespace limber {
 
 // Triangle t has the sides 3t, 3t+1, 3t+2; side h runs from its corner to the corner of nextSide(h). Any number of
-// sides may lie on one edge, running either way.
+// sides may lie on one edge, in either direction.
 inline Index nextSide(Index side) {
   return side % 3 == 2 ? side - 2 : side + 1;
 }

@@ -18,7 +18,7 @@ constexpr double kClearlyEncloses = 0.2;
 constexpr std::size_t kRayFaces = 16;  // of a patch, that rays begin at
 constexpr double kRayMargin = 1e-5;    // diagonals of modelBox: what is nearer to a ray's ends does not block it
 
-// Whether two triangles run opposite ways along their common edge, as neighbours should.
+// Whether two triangles traverse their common edge in opposite directions, as neighbours should.
 bool agree(const TriMesh& mesh, Index side, Index other) {
   return mesh.triangles[side / 3][side % 3] != mesh.triangles[other / 3][other % 3];
 }
@@ -143,7 +143,7 @@ class FaceReverser {
   double reach_ = 0, margin_ = 0;  // of rays
 };
 
-// By triangle whether an earlier one has the same three vertices; both share each of their edges.
+// By triangle whether an earlier one has the same three vertices, and so the same edges.
 std::vector<bool> repeatedFaces(const TriMesh& mesh, bool& allAgreeing) {
   std::vector<bool> repeats(mesh.triangles.size(), false);
   std::vector<std::pair<Index, Index>> apexes;  // the corner opposite to the edge, triangle
@@ -181,7 +181,7 @@ MendedFaces mendFaces(TriMesh& mesh) {
   }
   mended.repeated = static_cast<Index>(repeats.size() - kept);
   mesh.triangles.resize(kept);
-  // What is left of repeated triangles may lie either way round.
+  // What is left of repeated triangles may have either winding.
   if (allAgreeing && mended.repeated == 0) return mended;
   const std::vector<bool> reversed = reversedFaces(mesh);
   for (std::size_t t = 0; t < reversed.size(); ++t) {

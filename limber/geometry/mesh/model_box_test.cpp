@@ -5,7 +5,7 @@
 namespace limber {
 namespace {
 
-// Its corners at place + 0, side * x and side * y.
+// Its corners are position + 0, side * x and side * y.
 void addTriangle(TriMesh& mesh, const Vec3f& position, float side = 1) {
   const Index first = mesh.vertexCount();
   for (const Vec3f& corner : {Vec3f(0, 0, 0), Vec3f(side, 0, 0), Vec3f(0, side, 0)}) {

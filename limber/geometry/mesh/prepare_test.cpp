@@ -77,7 +77,7 @@ TEST(PrepareMesh, WeldsAsABruteForceDoes) {
 
 TEST(PrepareMesh, TrianglesWithARepeatedCornerGoThinOnesStay) {
   const std::vector<Vec3f> positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}, {2, 0, 0}};
-  // A sound one, one with a corner twice, one whose corners are at two places, one of three places on a line.
+  // A sound one, one with a corner twice, one whose corners are at two positions, one with its corners on a line.
   const std::vector<Triangle> triangles = {{0, 1, 2}, {1, 1, 2}, {0, 3, 1}, {0, 1, 4}};
   const PreparedMesh prepared = prepareMesh(positions, triangles);
   EXPECT_EQ(prepared.mesh.triangleCount(), 2u);

@@ -37,8 +37,8 @@ class SignedDistance {
     const double value = between(inside);
     return inside == scaled ? value : value + spacing_ * (scaled - inside).norm();
   }
-  // at() of N places in one go, x, y and z apart, in single precision: several times as fast as one by one. Beyond the
-  // grid the value at its border.
+  // at() of N positions at once, x, y and z in separate arrays, in single precision: several times as fast as one by
+  // one. Beyond the grid it is the value at the grid's border.
   template <std::size_t N>
   std::array<float, N> atEach(const std::array<std::array<float, N>, 3>& positions) const;
   // Of at(), by central differences of one spacing.
@@ -49,7 +49,7 @@ class SignedDistance {
   void measure(const std::vector<std::size_t>& nodes, const Bvh& surface, const WindingNumber& winding);
   void settle(Index step, std::vector<char>& known, std::vector<std::size_t>& wanted);
 
-  // At a place in spacings from the first node, not beyond the grid.
+  // At a position given in spacings from the first node, not beyond the grid.
   double between(const Vec3& spot) const {
     Index low[3];
     double part[3];

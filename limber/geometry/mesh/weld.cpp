@@ -273,7 +273,7 @@ class Welder {
     const std::map<Pair, Match> nearest = nearestAcross(openEdges);
     if (nearest.empty()) return;
     std::map<Pair, std::size_t> mutual, met = meetings();
-    std::set<Pair> matches;  // either way round
+    std::set<Pair> matches;  // in either order
     for (const auto& [key, match] : nearest) {
       const auto back = nearest.find({match.b, rangeOf_[match.a]});
       const bool isMutual = back != nearest.end() && back->second.b == match.a;

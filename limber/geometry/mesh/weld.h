@@ -26,8 +26,8 @@ struct StoredVertices {
 // at least join where open edges meet along a seam: each joins the nearest of the other range, no farther away than the
 // `quantisation` of both explains, at most the median edge. So two of one range become one where a coarser grid has
 // made one of their counterparts. A match counts if an open edge leads from both ends to another match, or from one end
-// to a match of the other that counts. Two ranges that meet at as many points without this share a grid and stay as
-// they are.
+// to a match of the other that counts. Two ranges that meet at as many points without this have a grid in common and
+// stay as they are.
 //
 // positions  #V, finite
 // triangles  indices in range

@@ -181,7 +181,7 @@ void WindingNumber::expand(Node& node) const {
   for (int k = 0; k < 10; ++k) node.second[k] = static_cast<float>(second[k]);
 }
 
-// Taylor's series of x / |x|^3 about `away`, the way from the point to the node's centre, times 4 pi.
+// Taylor's series of x / |x|^3 about `away`, the displacement from the point to the node's centre, times 4 pi.
 double WindingNumber::far(const Node& node, const Vec3& away) const {
   const double squared = away.squaredNorm();
   const double inverse = 1 / squared;

@@ -35,7 +35,7 @@ class WindingNumber {
     Vec3f center = Vec3f::Zero();  // of the area
     float radius = 0;              // of a ball round it that holds the triangles
     Vec3f area = Vec3f::Zero();    // sum of the vector areas
-    float first[6] = {};           // symmetric part of the first moment: xx yy zz, xy yz zx both ways
+    float first[6] = {};           // symmetric part of the first moment: xx yy zz, xy + yx, yz + zy, zx + xz
     Vec3f trace = Vec3f::Zero();   // of the second moment
     float second[10] = {};         // the second moment as a cubic form
     Index begin = 0, end = 0;      // triangles

@@ -78,7 +78,7 @@ TEST(WindingNumber, TurnsTrianglesThatAreFlipped) {
 
 TEST(WindingNumber, TakesAnyMesh) {
   EXPECT_EQ(WindingNumber(TriMesh()).at(Vec3::Zero()), 0);
-  TriMesh point;  // many triangles without area at one place
+  TriMesh point;  // many triangles without area at one position
   point.positions = {{0.5f, 0.5f, 0.5f}, {0.5f, 0.5f, 0.5f}, {0.5f, 0.5f, 0.5f}};
   point.triangles.assign(100, {0, 1, 2});
   const WindingNumber winding(point);

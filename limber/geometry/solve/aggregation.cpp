@@ -12,7 +12,7 @@ namespace limber {
 namespace {
 
 constexpr double kSmoothing = 4.0 / 3.0;  // Vanek and others 1996, section 3.2
-constexpr double kMinShrinking = 0.8;     // a coarser level that keeps more unknowns than this share gains nothing
+constexpr double kMinShrinking = 0.8;     // a coarser level that keeps a larger fraction of the unknowns gains nothing
 constexpr std::size_t kRowRange = 4096;   // rows of one parallel piece of work
 
 // Rows computed side by side and put together in their order. `fill(row, columns, values)` appends one row.
@@ -116,7 +116,7 @@ SparseRows transposed(const SparseRows& matrix) {
 }
 
 // The Laplacian in the matrix, without what its rows sum to: constants stay what they are under it. Weak entries off
-// the diagonal are gone (there, equation 3.9). The diagonal is held apart.
+// the diagonal are gone (there, equation 3.9). The diagonal is stored separately.
 struct Links {
   SparseRows strong;  // off the diagonal
   std::vector<double> diagonal;

@@ -24,7 +24,7 @@ std::vector<Index> minimumDegreeOrder(const Eigen::SparseMatrix<double>& lower) 
   return positionOf;
 }
 
-// Entries by the earlier (`byLater` false) or the later of their two places.
+// Entries by the earlier (`byLater` false) or the later of their two positions in the order.
 PermutedEntries permuteEntries(const Eigen::SparseMatrix<double>& lower, const std::vector<Index>& positionOf,
                                bool byLater) {
   PermutedEntries result;
@@ -50,7 +50,7 @@ PermutedEntries permuteEntries(const Eigen::SparseMatrix<double>& lower, const s
   return result;
 }
 
-// The parent of each place, itself for a root (Liu's algorithm with path compression).
+// The parent of each position in the order, itself for a root (Liu's algorithm with path compression).
 std::vector<Index> eliminationTree(const PermutedEntries& byLater) {
   const Index count = static_cast<Index>(byLater.first.size() - 1);
   std::vector<Index> parent(count), ancestor(count);
@@ -71,11 +71,11 @@ std::vector<Index> eliminationTree(const PermutedEntries& byLater) {
   return parent;
 }
 
-// New places so that each subtree's are contiguous and a parent comes right after its largest child's subtree.
+// New positions so that each subtree's are contiguous and a parent comes right after its largest child's subtree.
 struct Postorder {
-  std::vector<Index> positionOf;  // by old place
-  std::vector<Index> parent;      // by new place, itself for a root
-  std::vector<Index> treeSize;    // by new place: how many places the subtree under it has
+  std::vector<Index> positionOf;  // by old position
+  std::vector<Index> parent;      // by new position, itself for a root
+  std::vector<Index> treeSize;    // by new position: the size of the subtree under it
 };
 
 Postorder postorder(const std::vector<Index>& parent) {
@@ -87,10 +87,10 @@ Postorder postorder(const std::vector<Index>& parent) {
     Index& best = largest[parent[i]];
     if (best == kNoIndex || size[i] >= size[best]) best = i;
   }
-  // Going down from the last place, each subtree takes the places before its root: the largest child first, then the
-  // others in the order met.
+  // Going down from the last position, each subtree takes the positions before its root: the largest child first, then
+  // the others in the order met.
   Postorder result{std::vector<Index>(count), std::vector<Index>(count), std::vector<Index>(count)};
-  std::vector<Index> freeEnd(count);  // by old place: where the next child's subtree ends
+  std::vector<Index> freeEnd(count);  // by old position: where the next child's subtree ends
   Index rootsEnd = count;
   for (Index i = count; i-- > 0;) {
     const bool root = parent[i] == i;
@@ -158,7 +158,7 @@ class FrontGatherer {
     column.children = std::move(roots_[index]);
     std::vector<Index> merged;
     for (const Index child : column.children) {
-      const std::vector<Index>& below = fronts_[child].rows;  // its first row is this place
+      const std::vector<Index>& below = fronts_[child].rows;  // its first row is this position
       merged.clear();
       std::set_union(column.rows.begin(), column.rows.end(), below.begin() + 1, below.end(),
                      std::back_inserter(merged));
@@ -187,7 +187,7 @@ class FrontGatherer {
   const PermutedEntries& entries_;
   std::vector<FrontPlan> fronts_;
   std::vector<double> zeros_;              // by front: entries that are zero but kept
-  std::vector<std::vector<Index>> roots_;  // by place: fronts whose first row it is
+  std::vector<std::vector<Index>> roots_;  // by position: fronts whose first row it is
 };
 
 }  // namespace

@@ -10,8 +10,8 @@
 
 namespace limber {
 
-// Unknowns that are eliminated as one dense block: the places begin to end. Eliminating them touches the later places
-// `rows`, ascending. A front's children are those whose first row is one of its own places.
+// Unknowns that are eliminated as one dense block: positions `begin` to `end` in the order. Eliminating them changes
+// the later positions `rows`, ascending. A front's children are those whose first row is one of its own positions.
 struct FrontPlan {
   Index begin = 0, end = 0;
   std::vector<Index> rows;
@@ -20,7 +20,7 @@ struct FrontPlan {
   Index ownCount() const { return end - begin; }
 };
 
-// The entries of a permuted symmetric matrix, each in the column of the place that comes first.
+// The entries of a permuted symmetric matrix, each in the column of the position that comes first.
 struct PermutedEntries {
   std::vector<int> first;     // #V + 1
   std::vector<Index> row;     // of each entry's row, never before the column's

@@ -19,7 +19,7 @@ class FrontTreeCatalogue : public ::testing::TestWithParam<testing::NamedMesh> {
       : matrix_(robustLaplacian(GetParam().mesh, vertexComponents(GetParam().mesh)).stiffness),
         tree_(planFronts(matrix_)) {}
 
-  // By place: the later places that elimination in this order fills.
+  // By position: the later positions that elimination in this order fills.
   std::vector<std::set<Index>> fill() const {
     std::vector<std::set<Index>> rows(tree_.positionOf.size());
     for (int column = 0; column < matrix_.cols(); ++column) {

@@ -73,8 +73,8 @@ class DelaunayFlipper {
     return std::hypot(leftX - rightX, height);
   }
 
-  // Faces abc (side h: a to b, h1, h2) and bad (side t: b to a, t1, t2) become dca and cdb, in the same places: h runs
-  // from d to c, t from c to d, and each other side moves on by one place round the quadrilateral.
+  // Faces abc (side h: a to b, h1, h2) and bad (side t: b to a, t1, t2) become dca and cdb, in the same slots: h runs
+  // from d to c, t from c to d, and each other side moves on by one slot round the quadrilateral.
   void flip(Index h) {
     const Index t = t_.twin[h];
     const Index h1 = nextSide(h), h2 = nextSide(h1), t1 = nextSide(t), t2 = nextSide(t1);
@@ -110,7 +110,7 @@ class DelaunayFlipper {
   }
 
   IntrinsicTriangulation& t_;
-  std::vector<char> waiting_;  // #H: whether that place is on the stack, whichever side lies there by now
+  std::vector<char> waiting_;  // #H: whether that index is on the stack, whichever side has it by now
   std::vector<Index> stack_;
 };
 

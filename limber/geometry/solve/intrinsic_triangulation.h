@@ -10,8 +10,8 @@
 namespace limber {
 
 // Face f has the sides 3f, 3f+1, 3f+2; side h runs from corner `from[h]` to corner `from[nextSide(h)]` and is glued to
-// side `twin[h]`, which runs the other way. Every side is glued, so there is no boundary. Sides of one face may be
-// glued to each other, and a side may run from a vertex to itself.
+// side `twin[h]`, which runs in the opposite direction. Every side is glued, so there is no boundary. Sides of one face
+// may be glued to each other, and a side may run from a vertex to itself.
 struct IntrinsicTriangulation {
   std::vector<Index> from;        // #H
   std::vector<Index> twin;        // #H

@@ -255,7 +255,7 @@ const float* Multigrid::Scratch::solutionsOf(Index row) const {
   return reinterpret_cast<const float*>(&levels_[0].x[row]);
 }
 
-// One block of right-hand sides on its way.
+// Solves one block of right-hand sides.
 class Multigrid::Solve {
  public:
   Solve(const Multigrid& multigrid, float tolerance, Scratch& scratch)

@@ -63,7 +63,7 @@ class Multigrid {
 
   // Solves for at most kColumns right-hand sides, each given by its entries, none of them named twice. Solutions below
   // `tolerance` may be taken as zero, and the last step changed none by more. Returns false where that would take more
-  // than kMostCycles, as it may over slivers: SparseCholesky solves those.
+  // than kMaxCycles, as it may over slivers: SparseCholesky solves those.
   static constexpr int kMaxCycles = 40;
   bool solve(std::span<const std::span<const Entry>> right, float tolerance, Scratch& scratch) const;
 

@@ -16,7 +16,7 @@ using Sparse = Eigen::SparseMatrix<double>;
 
 constexpr float kTolerance = 1e-5f;
 
-// Heat that leaves each vertex, some faster; what held it at 1 would be the right-hand side `leaving`.
+// Heat that leaves each vertex, some faster; with the right-hand side `leaving` every vertex stays at 1.
 struct PinnedSurface {
   Sparse lower;
   Eigen::VectorXd leaving;
@@ -32,7 +32,7 @@ PinnedSurface pinnedSurface(const TriMesh& mesh) {
   return result;
 }
 
-// Every k-th unknown is held at 1 in the k-th of so many right-hand sides, at 0 in the others: solutions sum to 1.
+// Every k-th unknown is pulled to 1 in the k-th of so many right-hand sides, to 0 in the others: solutions sum to 1.
 std::vector<std::vector<Multigrid::Entry>> sharedSources(const PinnedSurface& surface, int count) {
   std::vector<std::vector<Multigrid::Entry>> result(count);
   for (int v = 0; v < surface.leaving.size(); ++v) {

@@ -32,11 +32,11 @@ class SparseCholesky {
   Index factorize(const Eigen::SparseMatrix<double>& lower);
 
   // Overwrites the first `columns` of kColumns right-hand sides with solutions.
-  // x: #V rows of kColumns; the row of an unknown is place(unknown).
+  // x: #V rows of kColumns; the row of an unknown is rowOf(unknown).
   void solve(double* x, int columns = kColumns) const;
 
   Index rowOf(Index unknown) const { return tree_.positionOf[unknown]; }
-  std::size_t factorEntries() const { return factorSize_; }  // doubles held, padding and all
+  std::size_t factorEntries() const { return factorSize_; }  // doubles stored, including padding
 
  private:
   struct Front;

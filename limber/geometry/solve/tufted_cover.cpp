@@ -68,7 +68,7 @@ class CoverBuilder {
   }
 
  private:
-  // Front faces first, in the mesh's order; then the back faces, with their corners the other way round.
+  // Front faces first, in the mesh's order; then the back faces, with their corners in reverse order.
   void makeFaces() {
     const Index faceCount = static_cast<Index>(triangles_.size());
     back_.resize(faceCount, kNoIndex);
@@ -119,7 +119,7 @@ class CoverBuilder {
     std::vector<double>& length = cover_.length;
     if (length.empty()) return;
     const double mean = std::accumulate(length.begin(), length.end(), 0.0) / static_cast<double>(length.size());
-    const double margin = mean > 0 ? kEdgeMargin * mean : 1;  // all corners at one place: any triangles will do
+    const double margin = mean > 0 ? kEdgeMargin * mean : 1;  // all corners at one position: any triangles will do
     double missing = 0;
     for (std::size_t h = 0; h < length.size(); h += 3) {
       const double a = length[h], b = length[h + 1], c = length[h + 2];

@@ -16,7 +16,7 @@ IntrinsicTriangulation coverOf(const TriMesh& mesh) {
   return tuftedCover(mesh, vertexComponents(mesh));
 }
 
-// Every side is glued to one that runs the other way and is as long.
+// Every side is glued to one of the same length that runs in the opposite direction.
 void expectGlued(const IntrinsicTriangulation& t) {
   for (Index h = 0; h < t.sideCount(); ++h) {
     const Index twin = t.twin[h];
@@ -100,7 +100,7 @@ TEST(TuftedCoverSides, ClosedOrientedPiecesAreCoveredOnce) {
 }
 
 TEST(TuftedCoverSides, PagesOfABookAreGluedToTheirNeighbours) {
-  // Seven pages round one edge, pages turned either way: each side of a page must meet the facing side of the next.
+  // Seven pages round one edge, of either winding: each side of a page must meet the facing side of the next.
   const TriMesh book = testing::pages(7);
   const IntrinsicTriangulation t = coverOf(book);
   const auto pageOf = [](Index vertex) { return (vertex - 3) / 3; };

@@ -29,7 +29,7 @@ constexpr double kMaxFill = 0.5;             // of the figure's box, by its volu
 constexpr double kMinColliderFit = 0.6;      // size of the figure along each axis, of that of a box round it
 constexpr double kMinInCollider = 0.9;       // of the figure's vertices within a box round it
 constexpr double kMaxPedestal = 0.5;         // height of a pedestal, of that of the figure
-constexpr double kSole = 0.03;               // of the figure's height, from its lowest point: what stands on a pedestal
+constexpr double kSole = 0.03;               // of the figure's height, from its lowest point: what rests on a pedestal
 constexpr double kMinStride = 0.15;          // of the extent of the feet, the gap between them
 constexpr std::size_t kSampled = 200;        // vertices or triangles of a component
 constexpr double kStrayArea = 0.01;          // of the figure's largest component: smaller ones may lie anywhere
@@ -87,7 +87,7 @@ Mat3 principalAxes(const TriMesh& mesh, const Component& component) {
   return Eigen::SelfAdjointEigenSolver<Mat3>(moments).eigenvectors().transpose();
 }
 
-// What stands before surroundings.
+// The figure in front of its surroundings.
 struct Figure {
   std::vector<Index> vertices;
   Box box;

@@ -17,10 +17,10 @@ struct FigureSurface {
 
 // prepareMesh, with each face once, faces that agree about the outside (mendFaces), and without
 // - the surroundings: connected components that are no part of the figure. These are flat ones that reach beyond all of
-//   it on every side, which stands on them or in front of them (floors, walls, slabs), closed convex ones round all of
-//   it (collider boxes), and flat or convex ones that it stands on with feet (the steps of a pedestal; +Y up). What
-//   they are in the model of has to be a figure: thick along a floor's normal, and hollow, so that it fills less than
-//   half of its box;
+//   it on every side, which it rests on or is in front of (floors, walls, slabs), closed convex ones round all of it
+//   (collider boxes), and flat or convex ones that its feet rest on (the steps of a pedestal; +Y up). The object that
+//   they surround has to be a figure: thick along a floor's normal, and hollow, so that it fills less than half of its
+//   box;
 // - inner shells: copies of all components a little within them (innerCopies); and components of which most lies within
 //   another one and which are, almost everywhere near its surface, a copy of it; where most of the figure has one, also
 //   small components within what has one.

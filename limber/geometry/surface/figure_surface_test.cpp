@@ -122,7 +122,7 @@ TEST(FigureSurface, PedestalBelowFeetIsNoPartOfTheFigure) {
       testing::joined(testing::joined(body, boxMesh({9, 1, 6}, {0, -1.53f, 0})), boxMesh({12, 1, 8}, {0, -2.53f, 0})));
   EXPECT_EQ(stepped.surroundings.size(), 16u);
   expectBodyAlone(stepped, body);
-  // A lamp stands on its foot with one pole.
+  // The lamp rests on its foot with one pole.
   const TriMesh lamp = testing::joined(boxMesh({1, 9, 1}, {0, 3.5f, 0}), boxMesh({9, 1, 1}, {0, 8.5f, 0}));
   EXPECT_TRUE(surfaceOf(testing::joined(lamp, pedestal)).surroundings.empty());
 }

@@ -62,14 +62,14 @@ class MirrorFinder {
   Mat3 principal_ = Mat3::Identity();
 };
 
-// The share of sampled vertices that have an image.
+// The fraction of sampled vertices that have an image.
 double MirrorFinder::sampleFit(const MirrorPlane& plane) const {
   std::size_t found = 0;
   for (const Index v : samples_) found += imageOf(plane, v) != kNoIndex ? 1 : 0;
   return static_cast<double>(found) / static_cast<double>(samples_.size());
 }
 
-// The plane moved to the median of the middles between vertices and images, if that is a noticeable way.
+// The plane moved to the median of the midpoints of vertices and images, if that is a noticeable distance away.
 MirrorPlane MirrorFinder::refined(const MirrorPlane& plane) const {
   std::vector<double> middles;
   for (const Index v : samples_) {

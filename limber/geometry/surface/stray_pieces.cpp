@@ -88,7 +88,7 @@ std::vector<double> strayFractions(std::span<const Vec3f> points, std::span<cons
 }
 
 std::optional<TriMesh> withoutStrays(const TriMesh& mesh) {
-  constexpr double kStray = 0.5;  // share below which a triangle is left out
+  constexpr double kStray = 0.5;  // fraction below which a triangle is left out
   Index pieces = 0;
   vertexComponents(mesh, &pieces);
   if (pieces < 2) return std::nullopt;

@@ -23,7 +23,7 @@ std::vector<double> strayFractions(std::span<const Vec3f> points, std::span<cons
                                    std::span<const VertexPair> edges, std::span<const VertexPair> links);
 
 // The same points with only those triangles that count for at least a half; nothing where all do. Cost: O(#V + #F) for
-// a model of one piece, else that of surfaceEdges, pieceLinks and strayShares.
+// a model of one piece, else that of surfaceEdges, pieceLinks and strayFractions.
 std::optional<TriMesh> withoutStrays(const TriMesh& mesh);
 
 }  // namespace limber

@@ -11,8 +11,8 @@ namespace limber {
 
 namespace {
 
-// The distance of `c` from a source that is `da` from `a` and `db` from `b`, by a straight way over the edge between
-// them, with the triangle unfolded beside the source. Infinite where the straight way misses the edge.
+// The distance of `c` from a source that is `da` from `a` and `db` from `b`, along a straight path across the edge
+// between them, with the triangle unfolded beside the source. Infinite where that path misses the edge.
 double acrossEdge(const Vec3& a, double da, const Vec3& b, double db, const Vec3& c) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
   const Vec3 edge = b - a;

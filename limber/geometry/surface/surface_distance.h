@@ -13,13 +13,13 @@ struct VertexDistance {
   double distance = 0;  // metres
 };
 
-// Distances over the triangles, never through the air or the inside: what shares no vertex is infinitely far. A front
-// runs from vertex to vertex, nearest first, and each triangle that it crosses is unfolded into the plane, so that on a
-// flat surface distances are right to a few hundredths however it is cut into triangles (after Kimmel, Sethian 1998,
-// Computing geodesic paths on manifolds, with the source unfolded instead of the gradient).
+// Distances over the triangles, never through the air or the inside: parts that share no vertex are infinitely far
+// apart. A front runs from vertex to vertex, nearest first, and each triangle that it crosses is unfolded into the
+// plane, so that on a flat surface distances are right to a few hundredths however it is cut into triangles (after
+// Kimmel, Sethian 1998, Computing geodesic paths on manifolds, with the source unfolded instead of the gradient).
 class SurfaceDistance {
  public:
-  // Welded: vertices at one place are one vertex. Cost: O(#V + #F).
+  // Welded: vertices at one position are one vertex. Cost: O(#V + #F).
   explicit SurfaceDistance(TriMesh mesh);
 
   const TriMesh& mesh() const { return mesh_; }

@@ -33,7 +33,7 @@ double closeness(double distance, const TouchDistances& of) {
   return smoothStep((of.apart - distance) / (of.apart - of.touching));
 }
 
-// Short ways stay about as they are.
+// Short displacements stay about as they are.
 Vec3 atMost(const Vec3& displacement, double most) {
   return displacement / std::pow(1 + std::pow(displacement.norm() / most, 8), 1.0 / 8);
 }

@@ -51,7 +51,7 @@ class HandGoals {
     TouchDistances distances;  // from the bone, of the gauge
   };
 
-  // The distance of two parts at rest; hip heights where one of them is missing or both are in one place.
+  // The distance of two parts at rest; hip heights where one of them is missing or both are at one position.
   Gauge gaugeOf(const BodyPart& from, const BodyPart& to) const;
   // None where a body lacks one of the parts.
   void addSurface(const BodyPart& from, const BodyPart& to, const Gauge& gauge, const TouchDistances& distances,

@@ -1,5 +1,5 @@
-// How far a leg reaches where it bends as the source's does. Feet that go the source's way, whatever the joint angles
-// (Leg::footDriven), say nothing about the legs above them.
+// How far a leg reaches where it bends as the source's does. Feet that follow the source's path, whatever the joint
+// angles (Leg::footDriven), say nothing about the legs above them.
 #pragma once
 
 #include <vector>

@@ -11,7 +11,7 @@ namespace {
 
 using limber::testing::quadruped;
 
-// Where the leg's paw is as high above its place in rest pose: how far the other's reaches, over the whole of its
+// Where the leg's paw is `raised` above its position in rest pose: how far the other's reaches, over the whole of its
 // bones.
 double reachOf(const Skeleton& one, const Skeleton& other, double raised) {
   const RetargetSetup setup(one, other, matchSkeletons(one, other), {});

@@ -9,7 +9,7 @@
 
 namespace limber {
 
-// Two bones and what they carry. The end hangs on the lower joint, or rides on it (RootPlacer).
+// Two bones and what they carry. The end hangs on the lower joint, or rides on it (RootPositioner).
 struct Limb {
   Index upper = 0, lower = 0, end = 0;
   Index sourceUpper = 0, sourceEnd = 0;
@@ -31,13 +31,13 @@ struct Leg : Limb {
   Vec3 kneeAhead = Vec3::UnitZ();                      // to which side the lower joint bends, in the neutral pose
   double ankleGround = 0, toesGround = 0;              // heights when standing, target; of the tip, too
   double sourceAnkleGround = 0, sourceToesGround = 0;  // likewise, source
-  double footPitch = 1;                                // share of the source's (limitFootPitch)
+  double footPitch = 1;                                // fraction of the source's (limitFootPitch)
   FootContact contact;                                 // of the source's foot in this frame
   double ankleFloor = 0, toesFloor = 0;                // below which neither goes in this frame
   double changed = 0;                                  // 0 to 1, smoothly, how much its goal is one (Pelvis::changeOf)
   Vec3 position = Vec3::Zero();                        // of the end, by the joint angles, or foot-driven
   double bentReach = 0;                                // footDriven: from hip to end if bent as the source's (LegBend)
-  // footDriven: of the source's foot from where it stands, hip heights; more of people who lie down.
+  // footDriven: of the source's foot above where it rests, hip heights; more of people who lie down.
   double lift = 0;
   double upright = 1;  // footDriven: of the source's body, 0 where it lies on its side
 };

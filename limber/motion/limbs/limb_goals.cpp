@@ -31,7 +31,7 @@ constexpr double kFallRate = 40;       // 1/seconds; 20 to 80; by which that spe
 // Fractions of that softness that a planted foot loses; 0 to 1; the point that is pinned, and the other; by jerk on the
 // shared people.
 constexpr double kFirmPinned = 0.9, kFirmBeside = 0.2;
-// Hip heights of the source; 0.001 to 0.01; where its foot sinks below where it stands; set on a wolf's idle as a
+// Hip heights of the source; 0.001 to 0.01; where its foot sinks below its resting height; set on a wolf's idle as a
 // horse, which trembled before.
 constexpr double kSoftLowered = 0.003;
 constexpr double kTipLies = 0.05;  // hip heights; 0.02 to 0.1; below it toes of the target alone lie down; set by hand
@@ -186,8 +186,8 @@ void LimbGoals::readFoot(Leg& leg, FootState& state, const BodyFrame& source, co
   if (leg.footDriven) readFootDriven(leg, state, source, seconds);
 }
 
-// Seen from its hip, which a longer or shorter trunk that turns takes further or less far; how it stands under it at
-// rest turns with the body. Up and down the source's way.
+// Relative to its hip, which a longer or shorter trunk that turns takes further or less far; the leg's offset from the
+// hip at rest turns with the body. Its height follows the source's.
 Vec3 LimbGoals::footDrivenPosition(const Leg& leg, const BodyFrame& source, const BodyFrame& target) const {
   const std::vector<Vec3>&from = setup_.sourceNeutral.restPositions, &to = setup_.targetNeutral.restPositions;
   const Vec3 atRest = to[leg.end] - to[leg.upper] - setup_.scale * (from[leg.sourceEnd] - from[leg.sourceUpper]);
@@ -212,7 +212,7 @@ Quat LimbGoals::turnOfBody(const Leg& leg, const BodyFrame& source) const {
   return source.rotations[*leg.sourceBody] * setup_.sourceNeutral.rotations[*leg.sourceBody].conjugate();
 }
 
-// It stands about as still as the source's: what moves there is meant to. People who lie down lift their feet.
+// The foot rests about as still as the source's: movement there is intended. People who lie down lift their feet.
 void LimbGoals::readFootDriven(Leg& leg, FootState& state, const BodyFrame& source, double seconds) const {
   leg.lift = (source.positions[leg.sourceEnd].y() - leg.sourceAnkleGround) / setup_.sourceHipHeight;
   leg.bentReach = state.bend->reach(source);
@@ -230,7 +230,7 @@ void LimbGoals::readFootDriven(Leg& leg, FootState& state, const BodyFrame& sour
   state.sourceEnd = source.positions[leg.sourceEnd];
 }
 
-// `down` is the way in this frame.
+// `down` is the downward displacement in this frame.
 void LimbGoals::followFall(double down, double seconds, Fall& fall) {
   springTo(seconds > 0 ? std::max(down / seconds, 0.0) : 0.0, kFallRate, seconds, fall.speed, fall.change);
 }

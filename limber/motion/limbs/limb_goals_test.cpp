@@ -11,8 +11,8 @@
 namespace limber {
 namespace {
 
-// How far above its place by the joint angles the left foot is held, of someone who comes down to the ground at
-// `speed`, metres a second, when it is there.
+// How far above its position by the joint angles the left foot is kept, of a person who comes down to the ground at
+// `speed`, metres a second, on arrival.
 double liftedHeight(double speed) {
   const Skeleton person = practiceHumanoid(), odd = limber::testing::oddlyBuilt();
   const RetargetSetup setup(person, odd, matchSkeletons(person, odd), {});
@@ -62,8 +62,8 @@ TEST(LimbGoals, LeaveWhatHasTheSameJoints) {
   }
 }
 
-// Of a quadruped's paw on a root of its own, `lift` above where it stands in the source and at its place in the target:
-// how far its goal is from the hip, over the distance that the paw's own path gives.
+// Of a quadruped's paw on a root of its own, `lift` above its resting position in the source and at its position in the
+// target: the distance of its goal from the hip, over the one that the paw's own path gives.
 double bentBy(double lift, double sunk) {
   const Skeleton animal = limber::testing::onTheGround(limber::testing::quadruped(0.5),
                                                        {"b0LeftThree", "b0RightThree", "b1LeftThree", "b1RightThree"}),
@@ -156,7 +156,7 @@ TEST(LimbGoals, WhoTurnsRoundStandsThereAsBefore) {
   }
 }
 
-// A paw that shoots up by half a leg is still held in the first frame after: the others' legs keep their bend.
+// A paw that shoots up by half a leg is still pinned in the first frame after: the other legs keep their bend.
 TEST(LimbGoals, AnAnimalsPelvisSinksSmoothly) {
   const Skeleton source = limber::testing::quadruped(0.5), target = limber::testing::quadruped(0.35);
   const RetargetSetup setup(source, target, matchSkeletons(source, target), {});

@@ -26,10 +26,10 @@ double hingeAngle(double one, double other, double opposite) {
   return std::acos(std::clamp(cosine, -1.0, 1.0));
 }
 
-// How the hock turns, by the least sum of squared turns that makes the leg as long as its goal asks, to first order:
-// each joint turns the more the farther it is off the line to the end. It folds as far as its share of the way takes:
-// at a hock that is nearly straight, first order would be too far. Towards straight and folded it comes the nearer the
-// slower.
+// The rotation of the hock, by the least sum of squared rotations that makes the leg as long as its goal requires, to
+// first order: each joint turns the more the farther it is off the line to the end. It folds by its exact fraction of
+// the change of length: at a hock that is nearly straight, first order would be too far. It approaches straight and
+// folded the slower the nearer it comes.
 Quat hockTurn(const Limb& limb, const LimbShape& shape, const Vec3& there) {
   const Vec3 line = shape.end.normalized(), toStart = -shape.hock, toEnd = shape.end - shape.hock;
   const double off = toStart.cross(line).norm(), kneeOff = shape.middle.cross(line).norm();
@@ -55,12 +55,13 @@ Vec3 jointsBend(const Limb& limb, const LimbShape& shape) {
   return bend + little * (backward + kKneesForward * limb.length) * forward;
 }
 
-// As at rest, seen from the body: the leg's own upper joint turns past the way where the source's bends far elsewhere.
+// As at rest, seen from the body: the leg's own upper joint turns past the direction to the end where the source's
+// bends far elsewhere.
 Vec3 ownBend(const LimbShape& shape) {
   return shortestRotation(shape.neutralEnd, shape.line) * shape.neutralAhead;
 }
 
-// Seen from the way to the goal: of a leg that is nearly straight, the knee itself may lie on its other side.
+// Seen from the direction to the goal: of a leg that is nearly straight, the knee itself may lie on its other side.
 Vec3 kneePole(const LimbShape& shape, const Vec3& there) {
   return 0.5 * there + shortestRotation(shape.line, there) * shape.bend;
 }

@@ -8,10 +8,10 @@ namespace limber {
 
 // What a limb is bent by to reach its goal.
 struct LimbShape {
-  Vec3 middle, end, hock;          // the ways there from the upper joint
+  Vec3 middle, end, hock;          // the displacements to these from the upper joint
   bool hockCarriesMiddle = false;  // else the middle carries the hock
   Vec3 ahead;                      // Leg::kneeAhead as the upper joint is turned
-  // Limb::ownBend: the way to the end and kneeAhead, both of the neutral pose, as the body is turned.
+  // Limb::ownBend: the direction to the end and kneeAhead, both of the neutral pose, as the body is turned.
   Vec3 neutralEnd = Vec3::UnitY(), neutralAhead = Vec3::UnitZ();
   Vec3 line, bend;  // of what is above: a unit vector to the end, and how the middle is to lie off that line
 
@@ -23,10 +23,10 @@ class LimbReach {
   // Both must outlive this.
   LimbReach(const RetargetSetup& setup, const RootPositioner& root) : setup_(setup), root_(root) {}
 
-  // Two bones in closed form. `frame` are the globals of `target`; both are brought up to date. The end keeps how it is
-  // turned, but for limb.turn. With `kneeAhead` (Leg) the middle joint bends to where it bends now, and to that side
-  // where it hardly bends or is a little overstretched: else it would snap from one side to the other. One with
-  // Limb::ownBend always bends to that side. A hock (Limb) takes its share of the way first.
+  // Two bones in closed form. `frame` are the globals of `target`; both are brought up to date. The end keeps its
+  // orientation, but for limb.turn. With `kneeAhead` (Leg) the middle joint bends to where it bends now, and to that
+  // side where it hardly bends or is a little overstretched: else it would snap from one side to the other. A limb with
+  // Limb::ownBend always bends to that side. A hock (Limb) takes its part of the change first.
   void reach(const Limb& limb, const Vec3* kneeAhead, BodyFrame& frame, Pose& target) const;
   // Whether the end is at its goal already, and turned as it has to be.
   static bool isThere(const Limb& limb, const BodyFrame& frame);
@@ -34,7 +34,8 @@ class LimbReach {
   void turnEnd(const Limb& limb, const Quat& orientation, BodyFrame& frame, Pose& target) const;
 
   LimbShape shapeOf(const Limb& limb, const Vec3& kneeAhead, const BodyFrame& frame) const;
-  // The ways from the upper joint to where reach() brings the middle and the end, for a goal that is `there` from it.
+  // The displacements from the upper joint to where reach() brings the middle and the end, for a goal at `there` from
+  // it.
   static TwoBonePositions positionsFor(const Limb& limb, LimbShape shape, const Vec3& there);
 
  private:

@@ -12,7 +12,7 @@ namespace {
 using limber::testing::oddlyBuilt;
 using limber::testing::quadrupedWithHocks;
 
-// A left leg of someone who stands.
+// A left leg of a person at rest.
 class LimbReachTest : public ::testing::Test {
  protected:
   LimbReachTest() {

@@ -14,7 +14,7 @@ struct LimbPair {
 
   const std::vector<Index>& of(MapSide side) const { return side == MapSide::kSource ? source : target; }
 };
-// A person, or an animal that stands on legs which both have.
+// A person, or an animal with legs that both skeletons have.
 bool hasLegs(const RetargetSetup& setup);
 
 // Of people arms and legs, of others RetargetSetup::animalLegs; without legs all bones from a matched joint to the
@@ -27,8 +27,8 @@ double standingHeight(const RetargetSetup& setup, MapSide side);
 
 using Path = std::vector<Vec3>;  // of a point, frame by frame
 
-// The pelvis over the hips' height, and of each limb the bones, each as the way from its joint to the next over its
-// length at rest: the same angles on other proportions have the same paths (Hogan, Sternad 2009).
+// The pelvis over the hips' height, and of each limb the bones, each as the displacement from its joint to the next
+// over its length at rest: the same angles on other proportions have the same paths (Hogan, Sternad 2009).
 class BodyPaths {
  public:
   // `setup` must outlive this.

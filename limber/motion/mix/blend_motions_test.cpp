@@ -89,7 +89,7 @@ TEST_F(BlendMotions, FeetSlideNoMoreAndNothingIsRougher) {
   }
 }
 
-// One that heads elsewhere: turning is blended, not places.
+// Two motions with different headings: turning is blended, not positions.
 TEST_F(BlendMotions, HeadsBetweenBoth) {
   const Quat turn(Eigen::AngleAxisd(1.0, Vec3::UnitY()));
   const ClipWithContacts aside{turnClip(walk.clip, skeleton, turn), {}};

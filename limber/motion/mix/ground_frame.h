@@ -1,11 +1,11 @@
-// Where a body is on the ground and which way it heads: what is left of its pose is the same anywhere.
+// A body's position on the ground and its heading: what is left of its pose is the same anywhere.
 #pragma once
 
 #include "limber/motion/mix/mix_body.h"
 
 namespace limber {
 
-// In the person's space (BodyFrame): +Y is up. A point p of the body's own frame is at turn * p + place.
+// In the person's space (BodyFrame): +Y is up. A point p of the body's own frame is at turn() * p + position().
 struct GroundFrame {
   double x = 0, z = 0;  // metres
   double heading = 0;   // radians about +Y, against the neutral pose
@@ -31,7 +31,7 @@ GroundStep stepBetween(const GroundFrame& from, const GroundFrame& to);
 GroundFrame moved(const GroundFrame& from, const GroundStep& step);
 // 0 is a, 1 is b.
 GroundStep mixOf(const GroundStep& a, const GroundStep& b, double weight);
-// Straight between two places, turned the short way.
+// Linear between two positions, turned by the shorter rotation.
 GroundFrame between(const GroundFrame& a, const GroundFrame& b, double weight);
 
 // The pose as it is in the frame, and back out: its roots move.

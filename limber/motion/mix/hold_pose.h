@@ -9,7 +9,7 @@ namespace limber {
 bool isStill(const Clip& clip);
 
 // Its first pose in frames `frameSeconds` apart, for so many seconds or up to a frame more. When feet are planted is
-// left to be read off it. Throws Error kLimit beyond kMostClipFrames.
+// left to be read off it. Throws Error kLimit beyond kMaxClipFrames.
 ClipWithContacts holdPose(const Skeleton& skeleton, const Clip& clip, double seconds, double frameSeconds);
 
 }  // namespace limber

@@ -34,7 +34,7 @@ class MixMotion {
   // The same where the globals of sample() are known.
   GroundFrame groundAt(double seconds, const BodyFrame& frame) const;
 
-  // Whether it ends as it begins, but for its place on the ground and its heading: then it can be repeated.
+  // Whether it ends as it begins, but for its position on the ground and its heading: then it can be repeated.
   bool loops() const;
   // One behind the other, so many times in all, each where the one before ended.
   MixMotion repeated(int times) const;

@@ -174,7 +174,7 @@ class Mixer {
     }
   }
 
-  // Turns a joint so that the next one lies in the direction of a place.
+  // Turns a joint so that the next one lies in the direction of a position.
   void pointAt(Index joint, Index next, const Vec3& position, Pose& pose) {
     const Vec3 now = frame_.positions[next] - frame_.positions[joint], wanted = position - frame_.positions[joint];
     const Quat turn = shortestRotation(now, wanted);

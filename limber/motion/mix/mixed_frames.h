@@ -1,4 +1,4 @@
-// Two motions of a character as one, moment by moment: poses, the way over the ground, planted feet.
+// Two motions of a character as one, frame by frame: poses, the trajectory over the ground, planted feet.
 #pragma once
 
 #include <optional>
@@ -33,13 +33,13 @@ struct MixedFrames {
 };
 
 // Poses are blended in the body's own frame (GroundFrame), and it moves and turns over the ground at the blend of their
-// speeds and turn rates: positions of two places say nothing of each other (Kovar, Gleicher 2003, Flexible automatic
-// motion blending with registration curves). Legs of both are blended by where knees and feet are and how feet are
-// turned: joint angles alone take them elsewhere where legs differ much. A foot is planted from the blend of the phases
-// at which it comes down in both to that of those at which it lifts off; what has no such partner in the other motion,
-// as when one of them stands, where each motion with a weight of a fifth or more plants it, and not further than a
-// fifth of the hips' height from where the other one does. Moments `frameSeconds` apart; the first is at `start`,
-// without one between where the motions are.
+// speeds and turn rates: world positions of two trajectories are not comparable (Kovar, Gleicher 2003, Flexible
+// automatic motion blending with registration curves). Legs of both are blended by where knees and feet are and how
+// feet are turned: joint angles alone take them elsewhere where legs differ much. A foot is planted from the blend of
+// the phases at which it comes down in both to that of those at which it lifts off; a contact without such a partner in
+// the other motion, as when one of them is still, is planted where each motion with a weight of a fifth or more plants
+// it, but not further than a fifth of the hips' height from where the other one does. Frames are `frameSeconds` apart;
+// the first is at `start`, without one between where the motions are.
 MixedFrames mixFrames(const MixBody& body, const MixMotion& a, const MixMotion& b, const StridePhases& phases,
                       std::span<const MixMoment> moments, double frameSeconds,
                       const std::optional<GroundFrame>& start = std::nullopt);

@@ -46,7 +46,7 @@ class FootPlanter {
  private:
   // A foot before any changes.
   struct FreeFoot {
-    Vec3 ankle = Vec3::Zero(), roll = Vec3::Zero();  // and the way from there to the toes
+    Vec3 ankle = Vec3::Zero(), roll = Vec3::Zero();  // and the displacement from there to the toes
     Quat turn = Quat::Identity();
   };
 

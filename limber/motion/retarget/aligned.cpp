@@ -8,8 +8,8 @@ namespace limber {
 
 namespace {
 
-// #joints + 1 places along a part, from 0 to 1: where each joint's bone begins, and the end. The last bone is as long
-// as the others are on average.
+// #joints + 1 fractions along a part, from 0 to 1: where each joint's bone begins, and the end. The last bone is as
+// long as the others are on average.
 std::vector<double> fractionsAlong(const std::vector<Index>& joints, const std::vector<Vec3>& positions) {
   std::vector<double> coordinates = {0};
   for (std::size_t i = 1; i < joints.size(); ++i) {
@@ -39,7 +39,7 @@ AlignedRetargeter::AlignedRetargeter(const RetargetSetup& setup)
   targetFrame_.positions.resize(setup.target->jointCount());
 }
 
-// A shin that bends on its way is one bone for one that does not.
+// A shin with a hock is followed as one bone by a shin without.
 void AlignedRetargeter::followLine(const BodyPart& part, const BodyPart& nextPart) {
   const JointMatch *match = setup_.map.find(part), *next = setup_.map.find(nextPart);
   if (!setup_.person || !match || !next) return;

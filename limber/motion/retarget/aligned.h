@@ -1,4 +1,4 @@
-// The method "aligned": each matched joint stands in the world as the source's does.
+// The method "aligned": each matched joint has the world rotation of the source's, against the neutral pose.
 #pragma once
 
 #include <memory>
@@ -12,10 +12,10 @@
 namespace limber {
 
 // Joint angle imitation in world space (Feng et al. 2012, Tang et al. 2012): a target joint's global rotation is the
-// source joint's turn against the neutral pose that both skeletons share, applied to the target's. Where joint counts
-// differ along a part, each target joint takes the mean turn of the source joints beside it; a shin without a hock
-// points from knee to foot as one with a hock does. Joints without a match keep their rest rotation against their
-// parent. No allocation; about 30 ns for each joint.
+// source joint's rotation against the neutral pose that both skeletons have in common, applied to the target's. Where
+// joint counts differ along a part, each target joint takes the mean rotation of the source joints beside it; a shin
+// without a hock points from knee to foot as one with a hock does. Joints without a match keep their rest rotation
+// against their parent. No allocation; about 30 ns for each joint.
 class AlignedRetargeter : public FrameRetargeter {
  public:
   explicit AlignedRetargeter(const RetargetSetup& setup);

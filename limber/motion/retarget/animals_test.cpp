@@ -126,7 +126,7 @@ TEST(RetargetAnimals, PlantedPawsStandStill) {
   }
   const PoseSequence motion = swaying(one);
   RetargetOptions options;
-  options.rootScale = RootScale::kNone;  // a way too short for these legs
+  options.rootScale = RootScale::kNone;  // a displacement too short for these legs
   const RetargetSetup setup(one, other, matchSkeletons(one, other), options, &motion);
   const auto displacement = [&](const char* method) {
     const PoseSequence result = retargetFrames(findRetargetMethod(method), setup, motion);

@@ -25,7 +25,7 @@ TEST(CopyRotations, LikeSkeletonsMoveAlike) {
   }
 }
 
-// It copies what stands in the tracks, whatever the bones' lengths.
+// It copies the tracks' values, whatever the bones' lengths.
 TEST(CopyRotations, RotationsAreTheSourcesOwn) {
   const Skeleton person = practiceHumanoid(), odd = limber::testing::oddlyBuilt();
   const PoseSequence motion = limber::testing::walk(person, 30), result = copied(person, odd, motion);

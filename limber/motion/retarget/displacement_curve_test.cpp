@@ -37,7 +37,7 @@ TEST(DisplacementCurve, ReachesWhatCountsAndFadesSmoothly) {
   EXPECT_LT(roughness(curve), 0.01);
 }
 
-// What stands in the middle of a motion: the place is free, so it lies where both sides are least changed.
+// A foot at rest in the middle of a motion: its position is free, so it lies where both sides are least changed.
 TEST(DisplacementCurve, StepsAreHeldAndThePlaceIsFree) {
   std::vector<CurveGoal> goals(120);
   double moved = 0;

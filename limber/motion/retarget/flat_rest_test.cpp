@@ -38,7 +38,7 @@ class FlatRest : public ::testing::Test {
       }
     }
     EXPECT_LT(worst, degrees);
-    // Of a path of 3 m: how high the ankles are over the toes is that of the frame that stands in for the rest pose.
+    // Of a path of 3 m: the ankles' height over the toes is that of the frame that replaces the rest pose.
     EXPECT_LT(apart, 0.25);
   }
 

@@ -27,7 +27,7 @@ struct FootPlanting {
   std::function<const BodyFrame&(std::size_t frame)> frameAt;
   // What has to hold for a leg's foot. `now`: the frame without changes.
   std::function<FootFrame(std::size_t frame, std::size_t leg, const BodyFrame& now)> askedOf;
-  // Makes the changes of a frame: those that `moved` and `layout` have at `place`.
+  // Makes the changes of a frame: those that `moved` and `layout` have at `index`.
   std::function<void(MovedLegs& moved, const ChangeLayout& layout, const Changes& changes, std::size_t index,
                      std::size_t frame)>
       change;

@@ -152,7 +152,7 @@ void LeastChanges::addPelvisJerk(const ChangedMotion& now) {
   }
 }
 
-// Bones follow the foot's way against the hip.
+// Bones follow the foot's displacement against the hip.
 void LeastChanges::addBones(std::size_t leg, const ChangedMotion& now) {
   const BoneSlopes& slopes = now.slopes[leg];
   for (std::size_t f = 0; f < layout_.frames(); ++f) {
@@ -185,7 +185,7 @@ void LeastChanges::addBones(std::size_t leg, const ChangedMotion& now) {
   }
 }
 
-// `block`: of the foot's way against the hip and of the shoulders' rise, in a frame and so many frames back.
+// `block`: of the foot's displacement against the hip and of the shoulders' rise, in a frame and so many frames back.
 void LeastChanges::addBlock(std::size_t leg, std::size_t frame, std::size_t back, const Eigen::Matrix4d& block,
                             BandLeastSquares& squares) {
   struct Unknown {
@@ -209,7 +209,7 @@ void LeastChanges::addBlock(std::size_t leg, std::size_t frame, std::size_t back
   }
 }
 
-// How the squared third differences of the values pull at each of them: in their place.
+// Replaces the values by half the gradient of the sum of their squared third differences.
 void LeastChanges::pullThirds() {
   for (std::size_t f = 3; f < layout_.frames(); ++f) {
     if (isWhole(cuts_, f)) thirds_[f] = thirdDifference(values_, f);

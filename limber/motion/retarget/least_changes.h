@@ -11,8 +11,8 @@
 
 namespace limber {
 
-// Of each frame: the way of the pelvis, that of each foot, and how far the shoulders rise where the trunk tilts, all in
-// hip heights. How they lie in one column.
+// Of each frame: the displacement of the pelvis, that of each foot, and how far the shoulders rise where the trunk
+// tilts, all in hip heights. Their order in one column.
 class ChangeLayout {
  public:
   ChangeLayout() = default;
@@ -64,7 +64,7 @@ struct ChangeWeights {
   int rounds = 3;                        // of looking for bounds that are met
 };
 
-// How a bone's direction follows its foot's place (the first three columns) and the shoulders' rise.
+// How a bone's direction follows its foot's position (the first three columns) and the shoulders' rise.
 using Slope = Eigen::Matrix<double, 3, 4>;
 using BoneSlopes = std::array<std::vector<Slope>, 2>;  // of a leg's two bones, frame by frame
 
@@ -97,7 +97,7 @@ class LeastChanges {
   Changes find(double jerkWeight);
 
  private:
-  // Which of its bounds hold a foot in one frame: those that were met on the way to the changes.
+  // Which of its bounds constrain a foot in one frame: those met while solving for the changes.
   struct Pinned {
     bool up = false, near = false;
   };

@@ -103,7 +103,7 @@ class MotionSmoother {
     return jerkRatio(sourceJerk_, partsJerk_, layout_.frames());
   }
 
-  // Of the target as it is, what hangs loose in its place.
+  // Of the target as it is, with its loose joints settled.
   const BodyFrame& globalsAt(std::size_t frame) {
     pose_ = target_.poses[frame];
     setup_.targetKinematics.globals(pose_, frame_);
@@ -165,7 +165,7 @@ class MotionSmoother {
     }
   }
 
-  // kTooFar: even a small part of the way. Where jerk counts more it is further.
+  // kTooFar: even a small fraction of the step. With a greater weight of jerk it is further.
   enum class Step { kTaken, kRefused, kTooFar };
 
   // As far as it gets less rough.

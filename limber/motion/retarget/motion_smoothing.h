@@ -5,11 +5,11 @@
 
 namespace limber {
 
-// Limbs that are solved for where feet have to be turn faster than the source's where proportions differ: a leg that is
-// nearly straight folds at once, a hip swings over a foot that stands. Where a motion's jerk (roughness.h) is more than
+// Limbs that are solved for the positions of feet turn faster than the source's where proportions differ: a leg that is
+// nearly straight folds at once, a hip swings over a planted foot. Where a motion's jerk (roughness.h) is more than
 // 1.08 times the source's, the pelvis and the feet move by the least that takes it there, as far as that can be with
 // changes of 0.15 hip heights at most: least squares over all frames of changes and jerk, by Gauss-Newton, jerk
-// counting ever more. Feet that stand in the source take no other steps than they did, none goes deeper below the
+// counting ever more. Feet that are planted in the source take no other steps than they did, none goes deeper below the
 // ground than it was, knees keep their sides, and loops close as they did. Motions that are smooth are left as they
 // are, bit for bit.
 //

@@ -92,7 +92,7 @@ TEST(MotionSmoothing, WhatIsSmoothStaysAsItIs) {
   for (std::size_t f = 0; f < smoothed.poses.size(); ++f) ASSERT_TRUE(areEqual(smoothed, person.result, f)) << f;
 }
 
-// The right foot stands up to frame 15 and from 45 to 75; the left one is lifted then.
+// The right foot is planted up to frame 15 and from 45 to 75; the left one is lifted then.
 TEST(MotionSmoothing, ASwingingLegThatJerksMovesAsSmoothlyAsTheSource) {
   const Case person(practiceHumanoid(), oddlyBuilt(), walk(practiceHumanoid()));
   const PoseSequence rough = person.jolted("leftUpperLeg", 58);

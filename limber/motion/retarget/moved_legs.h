@@ -24,8 +24,8 @@ class MovedLegs {
   // Whether legs are solved that are at their goals already.
   void solveAll(bool all) { solvesAll_ = all; }
 
-  // The paths of a ChangedMotion with these changes, without posing a body. False where feet that stand do not reach
-  // their places; `feet` of each frame, of each leg. About 0.1 us for a leg in a frame.
+  // The paths of a ChangedMotion with these changes, without posing a body. False where planted feet do not reach their
+  // positions; `feet` of each frame, of each leg. About 0.1 us for a leg in a frame.
   bool follow(const ChangeLayout& layout, const Changes& changes, std::span<const FootFrame> feet,
               std::vector<Path>& paths) const;
   // About the motion with its changes, seen over `probe` hip heights to each side.
@@ -52,7 +52,7 @@ class MovedLegs {
   };
   struct Reached {
     std::array<Vec3, 2> bones;  // over their lengths at rest
-    double missed = 0;          // of the way to the goal, metres
+    double missed = 0;          // distance left to the goal, metres
   };
 
   void findWeights();
@@ -65,7 +65,7 @@ class MovedLegs {
   const TrunkTilt& trunk_;
   LimbReach reach_;
   std::vector<Leg> legs_;
-  // How much of the pelvis' way its point goes, and each leg's hip.
+  // The fractions of the pelvis' displacement that its point and each leg's hip take.
   double pelvisWeight_ = 0;
   std::vector<double> hipWeights_;
   std::vector<std::array<double, 2>> lengths_;  // of each leg's bones at rest

@@ -109,7 +109,7 @@ Clip clipOf(const Skeleton& skeleton, const PoseSequence& frames, std::string na
       clip.translations.push_back(std::move(track));
     }
   }
-  // Someone who stands still stands as long.
+  // A still motion keeps its duration.
   if (clip.duration() < times.back() && skeleton.jointCount() > 0) {
     const Eigen::Quaternionf still = frames.poses.front().locals[0].rotation.normalized().cast<float>();
     clip.rotations.push_back({0, Interpolation::kLinear, times, std::vector(times.size(), still)});

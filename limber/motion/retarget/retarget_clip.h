@@ -13,12 +13,12 @@ namespace limber {
 inline constexpr Index kMaxClipFrames = 4'000'000;
 
 // The clip at even steps from 0 to its duration, as poses. `frameRate` in frames a second, above 0. Throws Error kLimit
-// for more than kMostClipFrames.
+// for more than kMaxClipFrames.
 PoseSequence sampleFrames(const Skeleton& skeleton, const Clip& clip, double frameRate);
 
 // Poses as a clip with a key at each frame: rotations of joints that turn, translations of joints that move away from
-// where they rest. Rotations keep the short way from key to key. Where nothing moves, the first joint's rotation has
-// the keys, so that the clip lasts as long.
+// where they rest. Quaternion signs are chosen for the shortest path from key to key. Where nothing moves, the first
+// joint's rotation has the keys, so that the clip lasts as long.
 Clip clipOf(const Skeleton& skeleton, const PoseSequence& frames, std::string name);
 
 // The method over all frames of a motion.

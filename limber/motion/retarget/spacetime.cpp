@@ -57,7 +57,7 @@ void follow(const Vec3& value, std::size_t frame, Goals3& goals) {
 
 // A foot in one frame before it is planted.
 struct FreeFoot {
-  Vec3 ankle = Vec3::Zero(), roll = Vec3::Zero();  // and the way from there to the toes
+  Vec3 ankle = Vec3::Zero(), roll = Vec3::Zero();  // and the displacement from there to the toes
   double ankleFloor = 0, toesFloor = 0;
 };
 
@@ -161,7 +161,7 @@ class Spacetime {
     return Eigen::AngleAxisd(twists_[f][i], Vec3::UnitY()) * feet_[i][f].roll;
   }
 
-  // What is asked of the foot: of steps, not of places. Where it stands best is left to the least squares.
+  // The constraints of the foot: on steps, not on positions. The least squares find where it is planted best.
   FootFrame askedOf(std::size_t i, std::size_t f, const BodyFrame& to) {
     const double unit = 1 / setup_.targetHipHeight;
     const Leg& leg = goals_.legs()[i];

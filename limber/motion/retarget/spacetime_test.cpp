@@ -21,7 +21,7 @@ class Spacetime : public ::testing::Test {
     return retargetFrames(findRetargetMethod(method), setup, moves);
   }
   PoseSequence by(const char* method) const { return by(method, motion); }
-  // The largest third difference of a hip's way, metres.
+  // The largest third difference of the hips' path, metres.
   double roughness(const PoseSequence& result) const {
     const Index hips = odd.find("hips").value();
     double worst = 0;

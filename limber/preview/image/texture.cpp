@@ -59,7 +59,7 @@ Image halved(const Image& image) {
   return half;
 }
 
-// The pixel that stands at `place`, which may lie beyond the picture.
+// The pixel for `index`, which may lie beyond the picture.
 int wrapped(std::int64_t index, int size, TextureWrap wrap) {
   if (wrap == TextureWrap::kClamp) return static_cast<int>(std::clamp<std::int64_t>(index, 0, size - 1));
   const std::int64_t period = wrap == TextureWrap::kMirror ? 2 * std::int64_t{size} : size;

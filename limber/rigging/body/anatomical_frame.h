@@ -1,4 +1,4 @@
-// Which way a model stands: its up, front and left, and the plane between left and right.
+// The orientation of a model: its up, front and left, and the plane between left and right.
 #pragma once
 
 #include <optional>
@@ -28,10 +28,10 @@ struct AnatomicalFrame {
 // left and right.
 AnatomicalFrame frameAlong(const TriMesh& mesh, const BodyVolume& body, const Vec3& up, const Vec3& front);
 
-// Ways that the body may stand, likeliest first: all that agree with what is given (unit vectors along axes). Without
-// up: +Y, then +Z, then the others. Both fronts of each plane of symmetry are among them. A body
-// that is symmetric to no plane across the axes, but to another, is turned or leans: then the ways along that plane,
-// with ups nearest to these.
+// Hypotheses of the body's orientation, likeliest first: all that agree with the given directions (unit vectors along
+// axes). Without up: +Y, then +Z, then the others. Both fronts of each plane of symmetry are among them. A body that is
+// symmetric to no plane across the axes, but to another, is rotated or leans: its hypotheses are the orientations along
+// that plane, with ups nearest to these.
 std::vector<AnatomicalFrame> possibleFrames(const TriMesh& mesh, const BodyVolume& body, const std::optional<Vec3>& up,
                                             const std::optional<Vec3>& front);
 

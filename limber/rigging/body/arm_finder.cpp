@@ -15,8 +15,8 @@ constexpr double kOutwards = 0.45;      // and beyond the hand
 constexpr double kArmSeedReach = 0.03;  // heights
 constexpr double kWider = 3.5;          // the trunk's cut, against the upper arm's
 constexpr double kJump = 2.5;           // over two cuts: sleeves widen little by little
-constexpr double kNarrower = 1.2;       // the arm beside its narrowest place, against that
-constexpr double kThickerWithin = 8;    // cuts from the narrowest place
+constexpr double kNarrower = 1.2;       // the arm beside its narrowest cut, against that
+constexpr double kThickerWithin = 8;    // cuts from the narrowest one
 
 }  // namespace
 

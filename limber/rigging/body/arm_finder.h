@@ -8,7 +8,7 @@
 
 namespace limber {
 
-// Ways along the arm are in heights from the shoulder as it was given, along the upper arm and then the forearm.
+// Offsets along the arm are in heights, from the given shoulder along the upper arm and then the forearm.
 class ArmFinder {
  public:
   // Joints in body space; elbow and hand in the middle of the arm. `body` and `frame` must outlive the finder.
@@ -22,7 +22,7 @@ class ArmFinder {
   std::optional<double> armpit() const { return armpit_; }
   double radius() const { return radius_; }  // of a disk as large as the upper arm's cut
 
-  // Where the arm is thinnest between two ways, if it is clearly thicker on both sides of it.
+  // Where the arm is thinnest between two offsets, if it is clearly thicker on both sides of it.
   std::optional<double> narrowest(double from, double to) const;
 
   // The middle of the arm; none where it was not seen thereabouts.

@@ -26,7 +26,7 @@ struct Piece {
   bool isCentral = false;  // it lies between left and right
   std::optional<std::size_t> parent;
   std::vector<std::size_t> children;
-  double farthest = 0;   // way to the farthest end below
+  double farthest = 0;   // path length to the farthest end below
   double trunkEnd = -1;  // the same over central pieces
 };
 
@@ -207,7 +207,7 @@ class CurveFinder {
     return curves;
   }
 
-  // Of what spreads so, seen along `way`: the roots of the two variances across it.
+  // The ratio of the roots of the two variances of `spread` across `distance`.
   static double flatnessAcross(const Mat3& spread, const Vec3& distance) {
     if (!(distance.norm() > 0)) return 1;
     const Vec3 side = distance.unitOrthogonal(), other = distance.normalized().cross(side);

@@ -27,21 +27,22 @@ struct BodyCurve {
   double length = 0;
 
   const Vec3& end() const { return points.back().position; }
-  // Of a branch: where it comes out of its carrier, half way into the flesh, as far aside as it comes out.
+  // Of a branch: where it comes out of its carrier, halfway into the flesh, as far to the side as it comes out.
   Vec3 root() const;
   // The points' in the middle, of the outer two thirds.
   double flatness() const;
   double meanRadius() const;
 };
 
-// The level sets of the way through the inside from an end of the body are as many pieces as the body has parts there;
-// their centres make a tree of curves (Verroust, Lazarus: Extracting skeletal curves from 3D scattered data, 2000).
-// Only what there is on both sides counts; the trunk runs between left and right. Branches that are short for the
-// thickness of the body where they hang are left out.
+// The level sets of the path length through the inside from one end of the body have as many components as the body has
+// parts there; their centres make a tree of curves (Verroust, Lazarus: Extracting skeletal curves from 3D scattered
+// data, 2000). Only parts that are on both sides count; the trunk runs between left and right. Branches that are short
+// for the thickness of the body at their root are left out.
 //
 // frame  of a symmetric body
-// The trunk comes first, from one end to the other, which are told apart by nobody yet; carriers come before what hangs
-// on them. Nothing where nothing lies between left and right. Cost: a few shortest ways through the grid.
+// The trunk comes first, from one end to the other; which end is which is not known yet. A carrier comes before the
+// curves attached to it. Empty where nothing lies between left and right. Cost: a few shortest-path searches through
+// the grid.
 std::vector<BodyCurve> bodyCurves(const BodyVolume& body, const AnatomicalFrame& frame);
 
 }  // namespace limber

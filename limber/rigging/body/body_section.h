@@ -23,8 +23,8 @@ struct BodySection {
   double halfDepth() const;  // half the extent of the part, along
 };
 
-// The connected part of the cut square to `normal` (a unit vector) at `seed` that holds the inside place nearest to it;
-// empty where none lies within `reach` (heights). For a level cut `across` is x.
+// The connected part of the cut square to `normal` (a unit vector) at `seed` that contains the inside position nearest
+// to it; empty where none lies within `reach` (heights). For a level cut `across` is x.
 BodySection sectionAt(const BodyVolume& body, const AnatomicalFrame& frame, const Vec3& seed, const Vec3& normal,
                       double reach);
 

@@ -43,7 +43,7 @@ std::vector<MedialSphere> medialSpheres(const SignedDistance& distance, const In
   return spheres;
 }
 
-// One end after the other: the node farthest from the middle, then the one farthest from the ways to all ends so far.
+// One end after the other: the node farthest from the middle, then the one farthest from the paths to all ends so far.
 std::vector<BodyTip> findTips(const SignedDistance& distance, InsideGraph& graph,
                               const std::vector<std::size_t>& inside) {
   Vec3 middle = Vec3::Zero();

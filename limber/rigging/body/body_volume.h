@@ -1,5 +1,4 @@
-// The inside of a model as a template sees it: how deep each place is, where the middle of its parts runs, and where
-// they end.
+// The inside of a model as a template needs it: the depth of each position, the middle of its parts, and their ends.
 #pragma once
 
 #include <memory>
@@ -19,7 +18,7 @@ struct MedialSphere {
 // The end of a limb: as far from the middle, inside the model, as it goes thereabouts.
 struct BodyTip {
   Vec3 position = Vec3::Zero();
-  double reach = 0;  // way through the inside to the ends found before and the ways there; longest side 1
+  double reach = 0;  // path length through the inside to the ends found before and the paths there; longest side 1
 };
 
 struct BodyVolume {

@@ -1,4 +1,4 @@
-// Which way the feet of a body point.
+// The direction in which the feet of a body point.
 #pragma once
 
 #include <span>
@@ -8,10 +8,11 @@
 
 namespace limber {
 
-// How far footprints lie before the legs above them, in the mean of the feet that stand: 1 half their own length, -1 as
-// much behind. 0 where no foot stands below an upright shin, or none can be told from what it stands on.
+// How far footprints lie before the legs above them, in the mean of the feet on the ground: 1 half their own length, -1
+// as much behind. 0 where no foot is on the ground below an upright shin, or none can be distinguished from what it
+// rests on.
 //
-// feet  body space, places near the ankles
+// feet  body space, positions near the ankles
 // Cost: three cuts for each foot.
 double feetForward(const BodyVolume& body, const AnatomicalFrame& frame, std::span<const Vec3> feet);
 

@@ -11,11 +11,11 @@ namespace limber {
 
 namespace {
 
-constexpr double kMaxSlope = 0.6;  // depth gained for each step: from there on a place is not in the middle
-// Spacings outside the surface over which parts that nearly touch hang together: more where else too little does.
+constexpr double kMaxSlope = 0.6;  // depth gained for each step: beyond this a position is not in the middle
+// Spacings outside the surface over which parts that nearly touch are connected: more where too little else is.
 constexpr double kGaps[] = {1.2, 3, 6, 12, 24};
-constexpr double kGapCost = 5;        // of a way there, times the spacings outside, against one inside
-constexpr double kTogether = 0.9995;  // part of the inside that must hang together
+constexpr double kGapCost = 5;        // of a path there, times the spacings outside, against one inside
+constexpr double kTogether = 0.9995;  // part of the inside that must be connected
 
 }  // namespace
 

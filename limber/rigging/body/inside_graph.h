@@ -1,4 +1,4 @@
-// Ways through the inside of a model.
+// Shortest paths through the inside of a model.
 #pragma once
 
 #include <cstddef>
@@ -21,18 +21,18 @@ class InsideGraph {
   // Whether no neighbor is much deeper.
   bool medial(std::size_t node) const;
 
-  // Nodes that are taken for outside from now on, and that no way crosses; #nodes.
+  // Nodes that count as outside from now on, and that no path crosses; #nodes.
   void block(std::vector<bool> nodes) { blocked_ = std::move(nodes); }
   // All nodes that are inside.
   std::vector<std::size_t> insideNodes() const;
   // The 26 round an inside node, as steps to them.
   const std::vector<std::ptrdiff_t>& steps() const { return steps_; }
 
-  // Lowers `way` (#nodes) to the shortest way from `sources`, and remembers whence in `from` (#nodes).
+  // Lowers `distances` (#nodes) to those from `sources`, and records in `from` (#nodes) the previous node of each path.
   void spread(const std::vector<std::size_t>& sources, std::vector<float>& distances,
               std::vector<std::size_t>& from) const;
-  // The same from one source, with `way` and `from` begun anew: gaps are allowed as wide as it takes for all but a few
-  // of the inside nodes to hang together, for this and what follows.
+  // The same from one source, with `distances` and `from` reset: gaps are allowed as wide as it takes to connect all
+  // but a few of the inside nodes, for this and later calls.
   void spreadToAll(std::size_t source, const std::vector<std::size_t>& inside, std::vector<float>& distances,
                    std::vector<std::size_t>& from);
 

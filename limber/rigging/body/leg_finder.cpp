@@ -8,7 +8,7 @@ namespace limber {
 namespace {
 
 constexpr double kLegSeedReach = 0.04;  // heights
-constexpr double kLowestParting = 0.3;  // of the way from ankle to hip as embedded: legs that part lower are no legs
+constexpr double kLowestParting = 0.3;  // of the height from ankle to hip as embedded: legs that part lower are no legs
 constexpr double kHockBehind = 0.05;    // heights
 constexpr int kStaysTogether = 3;       // cuts
 

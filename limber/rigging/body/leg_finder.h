@@ -16,7 +16,7 @@ struct LegChain {
 
 class LegFinder {
  public:
-  // places  of the template's joints, body space; all arguments must outlive the finder
+  // positions  of the template's joints, body space; all arguments must outlive the finder
   LegFinder(const BodyVolume& body, const AnatomicalFrame& frame, const std::vector<Vec3>& positions,
             const LegChain& left, const LegChain& right)
       : body_(body), frame_(frame), positions_(positions), legs_{left, right} {}

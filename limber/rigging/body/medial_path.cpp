@@ -28,7 +28,7 @@ bool joined(const BodyVolume& body, const MedialSphere& a, const MedialSphere& b
 std::vector<Vec3> medialPath(const BodyVolume& body, const Vec3& from, const Vec3& to) {
   const std::vector<MedialSphere>& spheres = body.spheres;
   if (spheres.empty()) return {};
-  // Dijkstra from the end, so that the way comes out in order.
+  // Dijkstra from the end, so that the path comes out in order.
   const std::size_t first = nearestSphere(spheres, from), last = nearestSphere(spheres, to);
   std::vector<double> length(spheres.size(), std::numeric_limits<double>::infinity());
   std::vector<std::size_t> next(spheres.size(), kNone);

@@ -1,4 +1,4 @@
-// The slab that a statue stands on.
+// The slab that a statue rests on.
 #pragma once
 
 #include <optional>

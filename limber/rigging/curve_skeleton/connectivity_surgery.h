@@ -16,10 +16,10 @@ struct CurveGraph {
 };
 
 // Half-edges of triangles are collapsed, cheapest first, until no triangle is left (Au et al. 2008, section 5): what a
-// collapse costs is how far the kept point lies from the lines of all edges that it stands for (shape), and a tenth of
+// collapse costs is how far the kept point lies from the lines of all edges that it represents (shape), and a tenth of
 // its length times that of the edges it draws along (sampling), so that nodes stay spread along the curves. Loops of
 // the surface stay loops. A point on the mirror plane is never collapsed into one beside it, so that the two halves of
-// a mirrored model keep hanging together.
+// a mirrored model stay connected.
 //
 // contracted  #P, the surface's points after the contraction
 // Cost: O(#P log #P).

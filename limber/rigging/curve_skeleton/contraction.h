@@ -26,7 +26,7 @@ std::vector<Vec3> contractedOnce(const std::vector<Vec3>& positions, const Eigen
 // first half of its steps on nothing; here the first step smooths over a fixed part of the whole surface.
 //
 // Cotangents are those of the tufted cover (robustLaplacian), so any triangles serve. A vertex without triangles stays.
-// Returns #V positions. Cost: at most kMostContractions factorisations.
+// Returns #V positions. Cost: at most kMaxContractions factorisations.
 std::vector<Vec3> contractSurface(const TriMesh& mesh, Progress& progress);
 
 inline constexpr double kContracted = 0.004;

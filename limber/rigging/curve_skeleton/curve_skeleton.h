@@ -15,7 +15,7 @@ namespace limber {
 // moves to the middle of the surface that went into it. body/body_curves.h finds the curves of a symmetric body through
 // its inside instead, by level sets on a grid; these here need no inside, no grid, no symmetry.
 //
-// All runs on an even sampling of the surface (even_surface.h), of kMostEvenPoints points at most, so that only reading
+// All runs on an even sampling of the surface (even_surface.h), of kMaxEvenPoints points at most, so that only reading
 // the model takes longer the larger it is. Separate pieces have a curve each, joined where their surfaces are nearest;
 // loops are cut. Bits that float about are left out (withoutStrays). A model that is its own mirror image has curves
 // that are, exactly: what one side alone has counts for both where x > 0, and not at all on the other side.

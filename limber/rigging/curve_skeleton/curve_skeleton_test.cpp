@@ -21,7 +21,7 @@ CurveSkeleton curvesOf(const TriMesh& mesh) {
   return CurveSkeleton::build(mesh, progress);
 }
 
-// Rings of `around` points about (u, v) -> place; the last ring meets the first where it `closes`.
+// Rings of `around` points about (u, v) -> position; the last ring meets the first where it `closes`.
 TriMesh ringsOf(int rings, int around, bool closes, const std::function<Vec3(double, double)>& position) {
   TriMesh mesh;
   for (int r = 0; r < rings; ++r) {

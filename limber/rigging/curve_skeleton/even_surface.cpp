@@ -187,7 +187,7 @@ void renumber(const std::vector<Index>& pointOf, EvenSurface& surface) {
     for (Index& v : t) v = pointOf[v];
   }
   std::erase_if(surface.triangles, [](const Triangle& t) { return !isProper(t); });
-  // One of those with the same corners, whichever way it is turned.
+  // One of those with the same corners, in whatever order.
   const auto sorted = [](Triangle t) {
     std::sort(t.begin(), t.end());
     return t;

@@ -13,7 +13,7 @@ namespace limber {
 // half with x >= 0 alone, so that whatever is made of it can be mirrored exactly.
 //
 // points     #P, in the collapse's space (CollapseFrame): longest side 1, mirror plane x = 0
-// areas      #P, of the surface that each point stands for, closed holes among it
+// areas      #P, of the surface that each point represents, closed holes included
 // onPlane    #P, 1 for points on the mirror plane (x is 0); all 0 without one
 // triangles  three different points each, none twice
 // edges      of the triangles, and others; ordered, none twice
@@ -29,7 +29,7 @@ struct EvenSurface {
 inline constexpr Index kMaxEvenPoints = 3000;  // of the whole model
 
 // Closes holes by fans, splits edges that are longer than points of an even sampling are apart, then gathers points
-// that the surface joins within one cell of a grid, until there are at most `mostPoints` (of the whole model). What
+// that the surface joins within one cell of a grid, until there are at most `maxPoints` (of the whole model). What
 // hangs together still does; what merely lies close stays apart. Of a model with `mirror` the side x < 0 is left out.
 //
 // Points without a triangle are left out. Empty where there is no triangle. Cost: O(#V + #F) and some 100 bytes a

@@ -102,7 +102,7 @@ class JointChooser {
   std::vector<Branch> branches_;
   std::vector<Index> branchOf_;                 // per node but the root: the branch that it is an inner node or end of
   std::vector<double> arcOf_;                   // and where on it
-  std::vector<double> reach_;                   // per node: the longest way down
+  std::vector<double> reach_;                   // per node: length of the longest path down
   std::vector<std::vector<Index>> branchesAt_;  // per node: those that come off there
   std::vector<Index> jointOf_;                  // per node
   std::vector<Joint> joints_;
@@ -117,7 +117,7 @@ void JointChooser::makeBranches() {
   const auto lengthOf = [&](Index v) { return (tree_.points[v] - tree_.points[tree_.parents[v]]).norm(); };
   reach_.assign(size, 0);
   for (Index v = size; v-- > 1;) reach_[tree_.parents[v]] = std::max(reach_[tree_.parents[v]], lengthOf(v) + reach_[v]);
-  // The child that goes on with its parent's branch: the one with the longest way, on the plane as the parent is.
+  // The child that goes on with its parent's branch: the one with the longest path, on the plane as the parent is.
   std::vector<Index> next(size, kNoIndex);
   for (Index v = 1; v < size; ++v) {
     const Index parent = tree_.parents[v];

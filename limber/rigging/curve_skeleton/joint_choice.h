@@ -1,4 +1,4 @@
-// Which places of a tree of curves become joints, for any number of them.
+// Which points of a tree of curves become joints, for any number of joints.
 #pragma once
 
 #include <vector>
@@ -7,11 +7,11 @@
 
 namespace limber {
 
-// A rooted tree of curves: nodes with parents before children. Of a model that is its own mirror image at x = 0 it
-// holds the half with x >= 0, in which a node that is paired stands for its image as well and the others lie on the
-// plane; below a paired node all are paired.
+// A rooted tree of curves: nodes with parents before children. Of a model that is its own mirror image at x = 0 it has
+// the half with x >= 0, in which a paired node represents its image as well and the others lie on the plane; below a
+// paired node all are paired.
 //
-// weights  share of the surface that goes with a node; of a pair, of one of the two
+// weights  fraction of the surface that belongs to a node; of a pair, to one of the two
 // parents  kNoIndex for the root, which is node 0
 struct CurveTree {
   bool isMirrored = false;
@@ -29,10 +29,10 @@ struct CurveTree {
 //   as far as the curve is off, and a quarter of the bone's length.
 // On a mirrored tree joints come in exact mirror pairs or lie on the plane; only where one joint is left over and no
 // bone lies on the plane it has no image. Throws Error kUnsupported where the tree is a single point and more joints
-// are asked for. Cost: O(#nodes + count log count), besides looking through each bone's curve.
+// are requested. Cost: O(#nodes + count log count), besides looking through each bone's curve.
 SphereMeshLevel chooseJoints(const CurveTree& tree, Index count);
 
-// For each count from 0 (infinite) to mostCount what counts most of what is not joined yet, as above: a length, never
+// For each count from 0 (infinite) to maxCount what counts most of what is not joined yet, as above: a length, never
 // growing. Where two joints come at once, the count between has the value of the one above it.
 std::vector<double> choiceErrors(const CurveTree& tree, Index maxCount);
 

@@ -17,7 +17,7 @@ namespace {
 // Against mean squared differences of rotations, which are pure numbers: below about two degrees the pull decides.
 constexpr double kPull = 1e-3;
 constexpr std::size_t kGapPoints = 256;  // of a bone, among which the nearest are looked for
-constexpr double kOneShared = 0.25;      // what a vertex that two bones share evenly adds to what they share
+constexpr double kOneShared = 0.25;      // what a vertex bound evenly to two bones adds to `shared`
 
 // The points that a bone moves most, and their weighted middle.
 struct BoneRegion {

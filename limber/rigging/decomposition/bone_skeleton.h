@@ -17,10 +17,11 @@ struct BoneSkeleton {
 };
 
 // Joints between bones that move about a common point (Le, Deng 2014, section 5): for each pair of bones the point
-// whose images under both motions stay nearest, with a slight pull to where the two share vertices (or come nearest),
-// which decides along a hinge's axis. The tree is the spanning tree of least cost, a pair's being how far the images
-// are apart plus the gap between the bones' vertices, up to doubled where they share fewer vertices than others do. The
-// root is the bone whose vertices' middle is nearest to that of all, and its joint stands there.
+// whose images under both motions stay nearest, with a slight pull to where both have vertices in common (or come
+// nearest), which decides along a hinge's axis. The tree is the spanning tree of least cost, a pair's being how far the
+// images are apart plus the gap between the bones' vertices, up to doubled where they have fewer vertices in common
+// than others do. The root is the bone whose vertices' middle is nearest to that of all, and its joint is at that
+// middle.
 //
 // rest  #points, as given to decomposeSkin
 // Cost: O(#points + #bones^2 * (#frames + 65,000)).

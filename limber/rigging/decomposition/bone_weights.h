@@ -17,10 +17,10 @@ struct FittedWeights {
 };
 
 // Weights that bring each point nearest to where it is in all frames, by linear blend (Le, Deng 2012, section 4.1):
-// among the kMostCandidates bones that fit it best alone, and those of `before`, at most `maxInfluences` (1 to
-// kMostInfluences) by sparseConvexWeights.
+// among the kMaxCandidates bones that fit it best alone, and those of `before`, at most `maxInfluences` (1 to
+// kMaxInfluences) by sparseConvexWeights.
 //
-// before  weights that the points had, over the same bones, at most kMostInfluences a point; empty for none
+// before  weights that the points had, over the same bones, at most kMaxInfluences a point; empty for none
 // Throws Error kBadArgument for other numbers of influences.
 // Parallel over points, the same for any number of threads. Cost: O(#points * #bones * #frames). Memory: 8 bytes a
 // point beside the result, 128 a pair of bones, and for each thread 192 a frame and 256 a bone.

@@ -55,8 +55,8 @@ Vector minOver(const WeightProblem& problem, const Support& support) {
   return weights;
 }
 
-// Goes from `weights`, which are 0 or more, towards the least value over the support; a member that comes to 0 on the
-// way leaves it.
+// Goes from `weights`, which are 0 or more, towards the least value over the support; a member whose weight comes to 0
+// before that leaves the support.
 Vector feasibleMin(const WeightProblem& problem, Support& support, Vector weights) {
   while (true) {
     const Vector wanted = minOver(problem, support);

@@ -21,7 +21,7 @@ constexpr int kLastIterations = 5;   // in which no bone is reseeded, so that al
 constexpr double kConverged = 1e-4;  // relative fall of the error below which nothing more is to be had
 constexpr double kWorthMore = 0.9;   // of the error with half as many bones: more bones are not worth it
 
-// A sequence about the origin with a box of unit diagonal at rest, every frame about its own middle; and the way back.
+// A sequence about the origin with a box of unit diagonal at rest, every frame about its own middle; and the inverse.
 class Centred {
  public:
   explicit Centred(VertexSequence& sequence) {
@@ -55,7 +55,7 @@ class Centred {
   }
 
  private:
-  // The middle is not finite where a place, or its square in diagonals, is not.
+  // The middle is not finite where a position, or its square in diagonals, is not.
   void centre(VertexSequence& sequence, Index f) {
     Vec3 middle = Vec3::Zero();
     for (Index v = 0; v < sequence.pointCount(); ++v) middle += sequence.at(v, f).cast<double>();

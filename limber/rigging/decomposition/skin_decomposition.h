@@ -11,7 +11,7 @@
 namespace limber {
 
 struct DecompositionOptions {
-  std::optional<Index> bones;  // at most so many, 1 to kMostBones; none: as few as the tolerance asks for
+  std::optional<Index> bones;  // at most so many, 1 to kMaxBones; none: as few as the tolerance asks for
   Index maxInfluences = 4;     // 1 to 8
   int iterations = 20;         // of weights and motions in turn, 1 or more
   double tolerance = 0.002;  // 0 or more, of the diagonal of the rest pose's box: the error at which bones are enough,
@@ -34,10 +34,10 @@ inline constexpr Index kMaxBones = 512;
 // those between.
 //
 // The sequence is taken over: its frames are centred and scaled where they lie. One point and one frame at least, in
-// any unit and place. Throws Error kBadData where the rest pose has no size, a position is not finite, or one is
-// farther away than 1e19 diagonals of the rest pose; kBadArgument for options out of range. Parallel, the same for any
-// number of threads. Memory beside the sequence: 100 bytes a point at 4 influences (+16 an influence), 96 a bone and
-// frame, 256 a pair of bones.
+// any unit and at any position. Throws Error kBadData where the rest pose has no size, a position is not finite, or one
+// is farther away than 1e19 diagonals of the rest pose; kBadArgument for options out of range. Parallel, the same for
+// any number of threads. Memory beside the sequence: 100 bytes a point at 4 influences (+16 an influence), 96 a bone
+// and frame, 256 a pair of bones.
 Decomposition decomposeSkin(VertexSequence sequence, const DecompositionOptions& options, Progress& progress);
 
 }  // namespace limber

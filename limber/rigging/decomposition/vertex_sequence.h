@@ -20,7 +20,7 @@ class VertexSequence {
   static constexpr double kMaxFrames = 1 << 20;  // nine hours at 30 a second
   static constexpr double kMaxPositions = 2e9;   // stored, those that fill up the last block among them: 24 GB
 
-  // Throws Error kLimit beyond kMostFrames or kMostPositions. Numbers that may not be whole, as those of untrusted
+  // Throws Error kLimit beyond kMaxFrames or kMaxPositions. Numbers that may not be whole, as those of untrusted
   // files.
   static void checkSize(double pointCount, double frameCount);
 

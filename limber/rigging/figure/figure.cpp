@@ -9,7 +9,7 @@ namespace limber {
 namespace {
 
 constexpr double kFoldedCos = -0.88;   // between the bones of a limb folded as far as it goes
-constexpr double kStraightSin = 0.12;  // of limbs so straight that they bend no way
+constexpr double kStraightSin = 0.12;  // of limbs so straight that they have no bend direction
 
 // The part of `direction` square to `axis`.
 Vec3 squareTo(const Vec3& axis, const Vec3& direction) {

@@ -29,7 +29,7 @@ inline constexpr double kThigh = 0.245, kShank = 0.245, kFoot = 0.12;
 struct FigureLimb {
   Vec3 upper = -Vec3::UnitY(), lower = -Vec3::UnitY();  // of the upper arm or thigh, the forearm or shank
   Vec3 end = -Vec3::UnitY();                            // of the hand or foot
-  Vec3 shift = Vec3::Zero();              // of the shoulder from its place, in statures along the chest's axes
+  Vec3 shift = Vec3::Zero();              // of the shoulder from its rest position, in statures along the chest's axes
   double upperScale = 1, lowerScale = 1;  // lengths against the proportions'
 };
 
@@ -45,7 +45,7 @@ inline bool alike(const LimbPositions& a, const LimbPositions& b, double middle,
 struct Figure {
   double stature = 1;                                        // as it would stand upright
   Vec3 head = Vec3::Zero();                                  // the middle of the ball
-  double headRadius = proportions::kHeadRadius;              // in the unit of places, not of the stature
+  double headRadius = proportions::kHeadRadius;              // in the unit of positions, not of the stature
   Vec3 neck = -Vec3::UnitY();                                // direction from the head to the neck's base
   double neckLength = proportions::kNeckLength;              // statures
   Mat3 chest = Mat3::Identity(), pelvis = Mat3::Identity();  // columns: left, up, front of the body
@@ -68,7 +68,7 @@ struct Figure {
 double upperLength(int limb);
 double lowerLength(int limb);
 
-// The way in which an elbow or knee bends that is turned neither in nor out: square to `upper`.
+// The direction in which an elbow or knee bends that is rotated neither in nor out: square to `upper`.
 Vec3 bendDirection(const Figure& figure, int limb, const Vec3& upper);
 
 // Where the toes of a leg point: square to the shank, with the knee; of any length.

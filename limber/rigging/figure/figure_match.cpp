@@ -22,12 +22,12 @@ constexpr double kNeckSpread = 0.02, kNeckCost = 0.1;       // of the neck's len
 constexpr double kLengthSpread = 0.12, kLengthCost = 0.08;  // of bones' lengths, logarithmic
 constexpr double kShiftSpread = 0.025, kShiftCost = 0.12;   // of shoulders, statures
 constexpr double kNod = 0.25, kBow = 0.3, kTwist = 0.15;    // of a head, a trunk turned by a right angle
-constexpr double kInTrunk = 0.5;                            // for each place of a limb inside the trunk
-constexpr double kInGround = 0.2, kGroundDepth = 0.03;      // for each place of a limb; statures, fully in it
+constexpr double kInTrunk = 0.5;                            // for each position on a limb inside the trunk
+constexpr double kInGround = 0.2, kGroundDepth = 0.03;      // for each position on a limb; statures, fully in it
 constexpr double kRootDepth = 0.025, kShallowRoot = 0.3;    // statures that shoulders and hips lie deep, at least
-constexpr double kTurnedArm = 0.15;                         // of an elbow that bends square to how it does at ease
+constexpr double kTurnedArm = 0.15;                         // of an elbow that bends square to its relaxed direction
 constexpr double kPinCost = 8, kFarFromPin = 0.25;          // statures from a pin, where it costs most
-constexpr double kShared = 0.175;                           // for each place that limbs share
+constexpr double kShared = 0.175;                           // for each position where limbs overlap
 
 struct LimbShape {
   std::array<double, 2> upperRadii, lowerRadii;  // statures, at the beginning and the end of a bone

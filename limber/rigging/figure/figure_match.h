@@ -10,7 +10,7 @@
 
 namespace limber {
 
-// Joints of a figure whose places are known.
+// Joints of a figure whose positions are known.
 struct FigurePin {
   enum class Joint { kHead, kNeck, kHips, kRoot, kMiddle, kAnkle, kTip };
   Joint joint = Joint::kHead;
@@ -51,15 +51,15 @@ class FigureMatch {
   // What pins of a limb cost where it is; up to its elbow or knee alone, where `upToMiddle`.
   double pinCost(const Figure& figure, int limb, bool upToMiddle = false) const;
 
-  // How much of a place lies inside the trunk or head, 0 to 1.
+  // How far a position lies inside the trunk or head, 0 to 1.
   double insideTrunk(const Figure& figure, const Vec3& position) const;
-  // How much of a place lies in the ground, 0 to 1.
+  // How far a position lies in the ground, 0 to 1.
   double inGround(const Figure& figure, const Vec3& position) const;
 
  private:
   static constexpr std::size_t kRing = 8, kOval = 12, kBall = 32;  // points
   enum class Hidden { kFree, kCosts };
-  // Ways from a place within a part to its surface, x, y and z apart, and how long they are.
+  // Directions from a position within a part to its surface, x, y and z apart, and the distances.
   template <std::size_t N>
   struct Spokes {
     std::array<std::array<float, N>, 3> directions;
@@ -102,17 +102,17 @@ struct LimbWeights {
 };
 const LimbWeights& weightsOf(int limb);
 
-// What is unlikely of a head that is bent against the chest.
+// The cost of a head that is bent against the chest.
 double nodCost(const Figure& figure);
 
-// What is unlikely of how a limb is held: bones longer or shorter than a body's, a shoulder out of its place, an upper
-// bone that points up.
+// The cost of an unlikely limb: bones longer or shorter than a body's, a displaced shoulder, an upper bone that points
+// up.
 double strain(const Figure& figure, int limb);
 
-// What it costs that two limbs share so much of their place (sharedPlace).
+// The cost of two limbs that overlap so much (limbOverlap).
 double sharingCost(double shared);
 
-// A figure and how well it matches: the trunk, each limb, and all in all, less what limbs share.
+// A figure and how well it matches: the trunk, each limb, and the total, less the overlap of limbs.
 struct MatchedFigure {
   Figure figure;
   double trunk = 0, total = 0;

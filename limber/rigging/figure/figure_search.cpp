@@ -71,7 +71,7 @@ class Search {
     keepApart(figures_, kReconsidered);
     forEach(0.8, [&](MatchedFigure& figure, Random& random) { reconsider(figure, random); });
     if (figures_.front().total <= kNobody) return {};
-    // The best once more, each time by other steps; and as it would face the other way, which feet alone may tell.
+    // The best once more, each time by other steps; and facing backwards, which only the feet may distinguish.
     const MatchedFigure best = figures_.front();
     figures_.assign(kPolished, best);
     const Figure around = turnedAround(best.figure);
@@ -197,8 +197,8 @@ class Search {
         });
   }
 
-  // Tries other ways to hold each limb, with the whole figure improved for each: a trunk fits the limbs it was found
-  // with better than any others.
+  // Tries other poses of each limb, with the whole figure improved for each: a trunk fits the limbs it was found with
+  // better than any others.
   void reconsider(MatchedFigure& figure, Random& random) const {
     for (int round = 0; round < kReconsiderRounds; ++round) {
       const double before = figure.total;
@@ -260,7 +260,7 @@ class Search {
     return most > figure.total && sumImproves(trial, figure);
   }
 
-  // What limbs share is measured only where it matters.
+  // The overlap of limbs is measured only where it matters.
   static bool sumImproves(MatchedFigure& trial, const MatchedFigure& figure) {
     double most = trial.trunk;
     for (const double limb : trial.limbs) most += limb;

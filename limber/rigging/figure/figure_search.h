@@ -12,14 +12,14 @@ namespace limber {
 
 struct FigureSearch {
   Vec3 up = Vec3::UnitY();
-  std::optional<Vec3> front;    // where it faces, roughly; in doubt any way
+  std::optional<Vec3> front;    // where it faces, roughly; none: any direction
   std::vector<FigurePin> pins;  // the figure comes near them as far as a body can
 };
 
-// Persons of a grown body's proportions who stand, sit, crouch or lean, alone or on and among other things, as statues
-// and scans have them. Analysis by synthesis: balls that may be heads; for each the trunks that may hang from it; for
-// the best of these the limbs that match best and do not share a place; the best of all are improved by small random
-// steps and the search for limbs from there, several times. Limbs keep out of a plinth (plinthTop).
+// Persons of an adult's proportions who stand, sit, crouch or lean, alone or on and among other objects, as statues and
+// scans have them. Analysis by synthesis: balls that may be heads; for each the trunks that may be attached to it; for
+// the best of these the limbs that match best and do not overlap; the best of all are improved by small random steps
+// and the search for limbs from there, several times. Limbs keep out of a plinth (plinthTop).
 //
 // The total of a match is 8 and more where there is such a person, and below 6 in animals, furniture and busts. None
 // where nothing is as round as a head.

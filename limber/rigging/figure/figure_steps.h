@@ -26,12 +26,12 @@ class StepSize {
 // with the elbow or without.
 void stepLimb(Figure& figure, int limb, double size, Random& random);
 
-// One change of the head or the trunk: its place or size, the stature, the neck, the chest (with the arms or without),
-// the pelvis. Mostly elbows, knees, wrists and ankles stay where they are, as far as bones can be as long: a limb that
-// matches well would hold the trunk back otherwise.
+// One change of the head or the trunk: its position or size, the stature, the neck, the chest (with the arms or
+// without), the pelvis. Mostly elbows, knees, wrists and ankles stay where they are, as far as bones can be as long: a
+// limb that matches well would otherwise keep the trunk from moving.
 void stepTrunk(Figure& figure, double size, Random& random);
 
-// Left for right and front for back, the limbs where they are; straight where they would bend the wrong way.
+// Left for right and front for back, the limbs where they are; straight where they would bend in the wrong direction.
 Figure turnedAround(Figure figure);
 
 }  // namespace limber

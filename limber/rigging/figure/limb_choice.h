@@ -1,4 +1,4 @@
-// Which of many ways to hold each limb go together.
+// Which of many candidate poses of each limb go together.
 #pragma once
 
 #include <array>
@@ -11,11 +11,11 @@ namespace limber {
 
 using LimbCandidates = std::array<std::vector<LimbFinder::Candidate>, kFigureLimbs>;
 
-// One of each limb's candidates, by its number, so that their matches less what they share come near the most: from the
-// first ones pairs are exchanged, as long as that is for the better.
+// One of each limb's candidates, by its number, so that the sum of their matches less their overlaps comes near the
+// largest: starting with the first ones, pairs are exchanged as long as that is an improvement.
 //
 // candidates  best first, at least one for each limb
-// Cost: what each pair of candidates of two limbs shares, once.
+// Cost: the overlap of each pair of candidates of two limbs, once.
 std::array<std::size_t, kFigureLimbs> chooseLimbs(const Figure& figure, const LimbCandidates& candidates);
 
 }  // namespace limber

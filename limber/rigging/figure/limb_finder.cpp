@@ -13,12 +13,12 @@ namespace {
 constexpr int kLimbDirections = 160;
 constexpr double kShortest = 0.85, kLongest = 1.15;  // lower bones against the proportions'
 constexpr double kSameDirection = 0.985;
-constexpr std::size_t kMaxLowers = 20;         // that begin at one place
+constexpr std::size_t kMaxLowers = 20;         // that begin at one position
 constexpr std::size_t kMaxDirections = 4;      // of these that a limb is tried with
 constexpr double kMinMatch = -0.1;             // of a lower bone
 constexpr double kThinnest[] = {0.012, 0.02};  // statures, of the body at elbows, at knees
 constexpr double kMaxStretch = 1.35, kMinStretch = 0.65;
-constexpr double kMaxShoulderShift = 0.03;  // statures that a shoulder gives way
+constexpr double kMaxShoulderShift = 0.03;  // statures by which a shoulder may move
 constexpr double kLimbInTrunk = 0.25;
 constexpr double kApartMiddles = 0.035;  // statures between elbows or knees that are looked at
 constexpr double kAlikeLimbMiddle = 0.04, kAlikeLimbAnkle = 0.06;
@@ -78,7 +78,7 @@ std::vector<LimbFinder::Upper> LimbFinder::uppersOf(const Figure& figure, int li
     bones = {};
     bones.upper = displacement / reach;
     if (!upperAllowed(trunk, limb, bones.upper)) continue;
-    if (!isLeg(limb)) {  // the shoulder gives way where the bone would be too long or too short
+    if (!isLeg(limb)) {  // the shoulder moves where the bone would be too long or too short
       const double give = std::clamp(reach - length, -kMaxShoulderShift * size, kMaxShoulderShift * size);
       bones.shift = give / size * (trunk.transpose() * bones.upper);
       reach -= give;

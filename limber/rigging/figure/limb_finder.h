@@ -19,14 +19,14 @@ class LimbFinder {
 
   struct Effort {
     std::size_t middles;  // elbows or knees to start from
-    std::size_t most;     // ways to hold the limb
+    std::size_t most;     // poses of the limb
     bool turnFeet;        // in or out, too
   };
   struct Candidate {
     FigureLimb bones;
     double match = 0;  // as FigureMatch::limb
   };
-  // The best ways to hold a limb, best first, no two of them alike.
+  // The best poses of a limb, best first, no two of them alike.
   std::vector<Candidate> find(const Figure& figure, int limb, const Effort& effort) const;
 
  private:

@@ -10,9 +10,9 @@ namespace {
 constexpr double kArmThick[] = {0.028, 0.022}, kLegThick[] = {0.045, 0.03};  // statures, upper and lower
 constexpr double kRoot = 0.4;  // of the upper bone that counts for nothing
 constexpr double kAlong[] = {0.55, 0.8, 1}, kAlongLower[] = {0.25, 0.5, 0.75, 1};
-constexpr double kTouch = 0.15, kDeep = 0.6;  // of both thicknesses that places touch by, and from there count fully
+constexpr double kTouch = 0.15, kDeep = 0.6;  // of both thicknesses: depth of a touch, and from there to full overlap
 
-// How much a place of a limb lies in another limb, 0 to 1: by the bone that it is deepest in.
+// How far a position on a limb lies in another limb, 0 to 1: by the bone that it is deepest in.
 double within(const LimbSpace::Sample& sample, const LimbSpace& other) {
   double least = 0, width = 1;
   for (const LimbSpace::Bone& bone : other.bones) {

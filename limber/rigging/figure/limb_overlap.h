@@ -1,4 +1,4 @@
-// How much of their place the limbs of a figure share.
+// How much the limbs of a figure overlap.
 #pragma once
 
 #include <array>
@@ -7,7 +7,7 @@
 
 namespace limber {
 
-// What a limb takes of space: places along its middle, and the bones beyond its root.
+// The space that a limb takes up: positions along its middle, and the bones beyond its root.
 struct LimbSpace {
   struct Sample {
     Vec3 at;

@@ -1,4 +1,4 @@
-// Functions that all libraries give to the last bit: a search by comparisons goes another way where one bit differs.
+// Functions with the same bits in every library: a search by comparisons takes another path where one bit differs.
 #pragma once
 
 #include <cmath>

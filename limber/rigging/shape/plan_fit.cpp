@@ -132,7 +132,7 @@ class PlanBuilder {
     return {positions[0], positions[bends[0]], positions[bends[1]], positions[last]};
   }
 
-  // Squared distances to the straight bone from one place to another.
+  // Squared distances to the straight bone from one position to another.
   static double strayed(const std::vector<Vec3>& positions, std::size_t from, std::size_t to) {
     double sum = 0;
     for (std::size_t p = from + 1; p < to; ++p) {

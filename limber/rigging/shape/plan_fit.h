@@ -28,7 +28,7 @@ const PlanKind* findPlanKind(std::string_view name);  // null where there is non
 // 0.
 double likelihood(const PlanKind& kind, const ShapeReading& reading);
 
-// The kind's skeleton in the body. Places are body space (of the reading's frame).
+// The kind's skeleton in the body. Positions are in body space (of the reading's frame).
 // Throws Error kUnsupported where the body has too few legs for it, or too many.
 TemplateFit fitPlan(const PlanKind& kind, const ShapeReading& reading);
 

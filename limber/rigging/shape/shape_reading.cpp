@@ -16,7 +16,7 @@ struct Margin {
   double of(double value) const { return std::clamp((value - bad) / (good - bad), 0.0, 1.0); }
 };
 // Of a leg.
-constexpr Margin kOnGround = {0.13, 0.07};   // height of its lowest place
+constexpr Margin kOnGround = {0.13, 0.07};   // height of its lowest point
 constexpr Margin kRound = {3.2, 2.4};        // times as wide as thick
 constexpr Margin kSolid = {0.005, 0.008};    // mean radius: what is one grid cell thick may be a sheet
 constexpr Margin kSticksOut = {0.65, 1.15};  // length, in radii of the trunk where it hangs
@@ -62,7 +62,7 @@ double drop(const BodyCurve& curve) {
   return curve.points.front().position.y() - lowest(curve).y();
 }
 
-// Legs reach the ground, come down most of the way to it, and are no fins or sheets.
+// Legs reach the ground, span most of the height down to it, and are no fins or sheets.
 double legLikeness(const BodyCurve& curve) {
   const BodyCurve::Point& root = curve.points.front();
   return kOnGround.of(lowest(curve).y()) * kRound.of(curve.flatness()) * kSolid.of(curve.meanRadius()) *
@@ -70,7 +70,7 @@ double legLikeness(const BodyCurve& curve) {
          kComesDown.of(drop(curve) / std::max(root.position.y(), 1e-9)) * kLegLength.of(curve.length);
 }
 
-// Where the curve has come so far of its way from its second point on: the first lies in the middle of its carrier.
+// The position at `part` of the curve's length from its second point on: the first lies in the middle of its carrier.
 Vec3 pointAlong(const BodyCurve& curve, double part) {
   double left = 0;
   for (std::size_t p = 2; p < curve.points.size(); ++p) {
@@ -284,7 +284,7 @@ class ShapeReader {
     const Vec3 pathLength = trunk.points.front().position - trunk.end();
     const double across = std::abs(pathLength.z()) / std::max(pathLength.norm(), 1e-9);
     const double slender = slenderness();
-    // That it stands as it is taken to stand, and that each limb is a leg or none.
+    // That its orientation is the assumed one, and that each limb is a leg or none.
     double counted = kUpright.of(anatomy.axes.up.y());
     for (const PairedLimb& limb : reading_.limbs) {
       // Of a leg that does not reach the ground its looks are all there is.

@@ -10,7 +10,7 @@
 
 namespace limber {
 
-// By what a body stands on, and how its trunk lies.
+// By the limbs that a body rests on, and the direction of its trunk.
 enum class BodyPlan {
   kUnknown,
   kUpright,   // on two legs at the lower end of the trunk: people, penguins, robots
@@ -39,7 +39,7 @@ struct ShapeReading {
   std::vector<PairedLimb> limbs;  // the foremost first
   BodyPlan plan = BodyPlan::kUnknown;
   double confidence = 0;      // that the plan is right, 0 to 1
-  std::vector<double> along;  // by the trunk's point: the way from the head, 1 at the other end
+  std::vector<double> along;  // by the trunk's point: path length from the head, 1 at the other end
 
   const BodyCurve& trunk() const { return curves.front(); }
   std::vector<PairedLimb> legs() const;
@@ -48,7 +48,7 @@ struct ShapeReading {
 };
 
 // Reads the curves of a symmetric body (bodyCurves) with the anatomy of a skeleton that is laid along them: which end
-// is the head, which limbs are arms, wings or fins. What it stands on is counted.
+// is the head, which limbs are arms, wings or fins. The limbs that it rests on are counted.
 //
 // frames  possibleFrames: the up of the likeliest is kept; the front, too, where `isFrontGiven`
 // None where the body is not symmetric, or has no trunk between left and right. Cost: about 30 ms.

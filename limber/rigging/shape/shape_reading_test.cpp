@@ -53,7 +53,7 @@ TEST(ShapeReading, BeginsTheTrunkAtTheHead) {
   }
 }
 
-// One whose nose is at -Z is seen to face that way, unless it is told not to.
+// An animal whose nose is at -Z is found to face -Z, unless the front is given.
 TEST(ShapeReading, FindsTheFrontOfAnAnimalThatIsTurned) {
   TriMesh turned = testing::capsuleTheropod();
   for (Vec3f& p : turned.positions) p = Vec3f(-p.x(), p.y(), -p.z());

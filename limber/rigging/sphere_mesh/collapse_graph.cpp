@@ -67,7 +67,7 @@ EdgeEnd CollapseGraph::retarget(EdgeEnd to, bool fromGone) const {
   return fromGone && operation_.crosses ? to ^ 1 : to;
 }
 
-// Reads both neighbourhoods whole. Which ways to a neighbour have been met is looked up in the short list of them, or
+// Reads both neighbourhoods whole. Which links to a neighbour have been met is looked up in the short list of them, or
 // by marks where it may be long.
 void CollapseGraph::mergeByMarks() {
   const Index kept = operation_.kept, gone = operation_.gone;
@@ -118,7 +118,7 @@ void CollapseGraph::gather(Index source) {
     const Index node = nodeOf(to);
     const bool isInside = inside(node);
     if (isInside) {
-      if (node != source && !fromGone) continue;  // the other way between kept and gone: met again from gone
+      if (node != source && !fromGone) continue;  // the opposite direction between kept and gone: met again from gone
       if (operation_.toSingle) {
         kill(e);
         continue;

@@ -11,10 +11,10 @@ namespace limber {
 
 class MonotoneQueue;
 
-// Nodes stand for one sphere on the mirror plane ("single"), or for a sphere and its mirror image ("pair"); without
+// Nodes represent one sphere on the mirror plane ("single"), or a sphere and its mirror image ("pair"); without
 // symmetry all are single. An edge between pairs joins sphere to sphere and image to image, or, when it crosses, each
-// to the image of the other. An edge from a pair to itself joins a sphere to its own image and always crosses.
-// An end of an edge packs node and crossing as 2 * node + crosses.
+// to the image of the other. An edge from a pair to itself joins a sphere to its own image and always crosses. An end
+// of an edge packs node and crossing as 2 * node + crosses.
 using EdgeEnd = std::uint32_t;
 inline constexpr Index kMaxNodes = Index{1} << 31;
 inline constexpr EdgeEnd makeEnd(Index node, bool crosses) {
@@ -32,10 +32,10 @@ struct GraphEdge {
   EdgeEnd to = 0;
 };
 
-// At most one edge is kept between two nodes for each way of crossing. Neighbours are blocks of links in one pool;
-// block sizes are powers of two, and freed blocks are used again. Blocks of more than kHub links are not kept up to
-// date when a neighbour merges, which would cost their length each time: their links are read through the edge itself,
-// and dead ones are dropped when the block is next rewritten. A merge costs O(links of the node with fewer).
+// Between two nodes at most one edge that crosses is kept, and one that does not. Neighbours are blocks of links in one
+// pool; block sizes are powers of two, and freed blocks are used again. Blocks of more than kHub links are not kept up
+// to date when a neighbour merges, which would cost their length each time: their links are read through the edge
+// itself, and dead ones are dropped when the block is next rewritten. A merge costs O(links of the node with fewer).
 class CollapseGraph {
  public:
   // edges  no duplicates; an edge to a single node does not cross

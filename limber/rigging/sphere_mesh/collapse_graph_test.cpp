@@ -118,7 +118,7 @@ void collapseRandomly(const Case& start, std::uint64_t seed) {
       ASSERT_TRUE(!graph.alive(touched) || heap.contains(touched));
     }
     ASSERT_EQ(expanded(graph, count), plain.edges());
-    // No two edges lead the same way, and none is missing from the heap.
+    // No two edges have the same ends and crossing, and none is missing from the heap.
     std::size_t alive = 0;
     std::set<std::pair<Index, EdgeEnd>> neighbours;
     for (Index i = 0; i < count; ++i) {

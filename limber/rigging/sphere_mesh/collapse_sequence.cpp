@@ -1,8 +1,8 @@
-// Tried and given up: an indexed heap of four or eight ways in place of the radix heap (20,000 vertices, one thread,
-// two cores, best of ten: 0.042 s against 0.032 s, two smaller changes included); a pull towards the points of
-// 0.01 or more (SphereQuadric::kCentering), which draws handles out to the skin, and of 0.0001 or less, which lets
-// spheres of flat parts grow out of the model. Edges are evaluated 3.75 times a merge on a smooth closed surface;
-// evaluating all edges of the merged node would be 7 times.
+// Tried and given up: an indexed heap of four or eight children instead of the radix heap (20,000 vertices, one thread,
+// two cores, best of ten: 0.042 s against 0.032 s, two smaller changes included); a pull towards the points of 0.01 or
+// more (SphereQuadric::kCentering), which draws handles out to the skin, and of 0.0001 or less, which lets spheres of
+// flat parts grow out of the model. Edges are evaluated 3.75 times a merge on a smooth closed surface; evaluating all
+// edges of the merged node would be 7 times.
 #include "limber/rigging/sphere_mesh/collapse_sequence.h"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace limber {
 
 namespace {
 
-// What a node stands for, in two cache lines.
+// What a node represents, in two cache lines.
 struct alignas(64) Cluster {
   SphereQuadric quadric;  // of the sphere on the plane, or of the one of a pair on the positive side
   Index changed = 0;      // merges done when it last became what it is

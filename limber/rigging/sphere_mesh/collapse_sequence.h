@@ -22,7 +22,7 @@ struct CollapseInput {
 // One step. Two single nodes, or a pair and its image: one sphere less. Two pairs, or a pair and a single node: two
 // spheres less at once.
 struct Merge {
-  Index kept = 0;                // node that stands for the result
+  Index kept = 0;                // node that represents the result
   Index gone = 0;                // kept itself where a pair merges with its own image
   bool crosses = false;          // kept merged with the image of gone
   bool single = false;           // the result is one sphere

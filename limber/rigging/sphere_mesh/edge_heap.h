@@ -9,7 +9,7 @@
 
 namespace limber {
 
-// An eight-way heap: the children of a slot share a cache line. An entry packs the key's bits (keys are floats >= 0,
+// An eight-ary heap: the children of a slot lie in one cache line. An entry packs the key's bits (keys are floats >= 0,
 // whose bits order as they do) above the edge's index, so that one integer comparison orders by key and breaks ties by
 // index. Each operation is O(log #entries).
 class EdgeHeap {
@@ -41,8 +41,7 @@ class EdgeHeap {
   struct alignas(64) Line {
     std::uint64_t entries[kArity];
   };
-  // Slot i > 0 stands at place i + 7, slot 0 at place 7, so that the children of i, 8 i + 1 to 8 i + 8, fill line i
-  // + 1.
+  // Slot i > 0 is entry i + 7, slot 0 is entry 7, so that the children of i, 8 i + 1 to 8 i + 8, fill line i + 1.
   std::uint64_t& at(Index slot) { return lines_[(slot + kArity - 1) / kArity].entries[(slot + kArity - 1) % kArity]; }
   const std::uint64_t& at(Index slot) const {
     return lines_[(slot + kArity - 1) / kArity].entries[(slot + kArity - 1) % kArity];

@@ -24,7 +24,7 @@ void expectTree(const HandleTree& tree, std::size_t count) {
   }
 }
 
-// Spheres of radius 1 at the given places, joined by `edges`.
+// Spheres of radius 1 at the given positions, joined by `edges`.
 SphereMeshLevel levelOf(const std::vector<Vec3>& centers, std::vector<VertexPair> edges) {
   SphereMeshLevel level;
   for (const Vec3& c : centers) {
@@ -84,7 +84,7 @@ TEST(HandleTree, IsItsOwnMirrorImage) {
 }
 
 TEST(HandleTree, PrefersShortLinks) {
-  // A square with one diagonal: the longest way round is left out.
+  // A square with one diagonal: the longest edge of each cycle is left out.
   const SphereMeshLevel level =
       levelOf({{0, 0, 0}, {3, 0, 0}, {3, 3, 0}, {0, 9, 0}}, {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {2, 3}});
   const HandleTree tree = handleTree(level);
@@ -111,7 +111,7 @@ TEST(HandleTree, TheRootIsInTheMiddle) {
 }
 
 TEST(HandleTree, LimbsHangTogether) {
-  // From every handle in a leg or an arm the way to the root stays in that limb until it leaves it for good.
+  // From every handle in a leg or an arm the path to the root stays in that limb until it leaves it for good.
   const SphereMesh spheres = sphereMeshOf(testing::blockBiped(2));
   const auto limbOf = [](const Vec3& c) {
     if (c.y() < 3.8) return c.x() > 0 ? 1 : 2;

@@ -12,12 +12,12 @@
 
 namespace limber {
 
-// A radix heap (Ahuja, Mehlhorn, Orlin, Tarjan: Faster Algorithms for the Shortest Path Problem, 1990) with a place for
-// each edge, so that edges are raised and removed where they stand. An entry packs a key's bits (keys are floats >= 0,
-// whose bits order as they do) above the edge's index: ties go by index. Entries are bucketed by the highest bit in
-// which they differ from a bound that no entry is below; when the lowest bucket is needed it is dealt out to lower
-// ones. Raising and removing are O(1); an entry is dealt out at most once for each of 64 buckets, a few times in
-// practice, and in order of memory, where a binary heap of this size would miss the cache at every level.
+// A radix heap (Ahuja, Mehlhorn, Orlin, Tarjan: Faster Algorithms for the Shortest Path Problem, 1990) with a slot for
+// each edge, so that edges are raised and removed in place. An entry packs a key's bits (keys are floats >= 0, whose
+// bits order as they do) above the edge's index: ties go by index. Entries are bucketed by the highest bit in which
+// they differ from a bound that no entry is below; when the lowest bucket is needed it is dealt out to lower ones.
+// Raising and removing are O(1); an entry is dealt out at most once for each of 64 buckets, a few times in practice,
+// and in order of memory, where a binary heap of this size would miss the cache at every level.
 class MonotoneQueue {
  public:
   // All edges with their keys.

@@ -141,7 +141,7 @@ std::vector<VertexPair> SphereMesh::edgesOf(const Cut& cut) const {
   return edges;
 }
 
-// The node that stands for `end` after so many merges, crossing where the way there leads to its image.
+// The node that represents `end` after so many merges, crossing where the path there leads to its image.
 EdgeEnd SphereMesh::climb(EdgeEnd end, Index mergeCount) const {
   Index node = nodeOf(end);
   bool crosses = crossesOf(end);
@@ -152,7 +152,7 @@ EdgeEnd SphereMesh::climb(EdgeEnd end, Index mergeCount) const {
   return makeEnd(node, crosses);
 }
 
-// Makes one handle of two: those of two single nodes, or the two of a pair. The last handle takes the freed place.
+// Makes one handle of two: those of two single nodes, or the two of a pair. The last handle takes the freed slot.
 void SphereMesh::applyBridge(const Cut& cut, SphereMeshLevel& level) const {
   const Bridge& bridge = *cut.bridge;
   const Index first = cut.find(bridge.a).handle;

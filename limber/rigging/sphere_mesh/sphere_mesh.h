@@ -17,7 +17,7 @@ namespace limber {
 // One number of spheres. Indices in it are handles: 0 to spheres.size().
 struct SphereMeshLevel {
   std::vector<Sphere> spheres;    // in the space of the mesh
-  std::vector<double> weights;    // share of the surface that each sphere stands for, by area
+  std::vector<double> weights;    // fraction of the surface that each sphere represents, by area
   std::vector<Index> images;      // its mirror image, itself on the plane, kNoIndex if none; empty without symmetry.
                                   // Of two images the first is on the plane's positive side
   std::vector<VertexPair> edges;  // between neighbours, first < second, ordered; they connect all spheres
@@ -26,31 +26,31 @@ struct SphereMeshLevel {
 // Sphere-Meshes: Shape Approximation using Spherical Quadric Error Metrics; Thiery, Guy, Boubekeur; 2013.
 //
 // The collapse starts from every vertex as a sphere of radius 0 and merges neighbours, cheapest first, into the sphere
-// that is nearest to the planes of all triangles that either stood for (SphereQuadric). Separate pieces are linked
-// where they are nearest; bits that float about count for less (strayShares). On a model that is its own mirror image a
-// merge and its image are one step, so that spheres come in exact mirror pairs or lie exactly on the plane, at every
+// that is nearest to the planes of all triangles that either represented (SphereQuadric). Separate pieces are linked
+// where they are nearest; fragments that float count for less (strayFractions). On a model that is its own mirror image
+// a merge and its image are one step, so that spheres come in exact mirror pairs or lie exactly on the plane, at every
 // count up to the number of vertices that have an image.
 class SphereMesh {
  public:
-  // Records the whole collapse. Of a model with more than mostStartNodes vertices (pairs of images count as one) it
+  // Records the whole collapse. Of a model with more than maxStartNodes vertices (pairs of images count as one) it
   // begins with such as are near each other joined (joinNearNodes), which it would merge first. Throws Error kBadData
   // for a mesh without vertices, kLimit for more than 2^30. Cost: O(#V log #V), two to four microseconds a vertex; 0.9
   // kB a vertex while it runs.
   static SphereMesh build(const TriMesh& mesh, Progress& progress, Index maxStartNodes = kMaxStartNodes);
 
   Index vertexCount() const { return static_cast<Index>(vertexEnds_.size()); }
-  // As many as vertices, but on models of more than mostStartNodes.
+  // As many as vertices, but on models of more than maxStartNodes.
   Index maxSpheres() const { return sequence_.initialCount + static_cast<Index>(loose_.size()); }
   const std::optional<MirrorPlane>& mirror() const { return mirror_; }
 
-  // Throws Error kBadArgument unless 1 <= count <= mostSpheres(). Cost: O(count log #V).
+  // Throws Error kBadArgument unless 1 <= count <= maxSpheres(). Cost: O(count log #V).
   SphereMeshLevel level(Index count) const;
-  // For each vertex the sphere of level(count) that stands for it. Cost: O(#V).
+  // For each vertex the sphere of level(count) that represents it. Cost: O(#V).
   std::vector<Index> vertexHandles(Index count) const;
 
   // How far the surface's tangent planes are from the spheres, root mean square over its area, in units of the mesh,
-  // for each count from 0 (infinite) to mostCount. Where two spheres merge at once, the count between has the error of
-  // the one above it. Cost: O(mostCount).
+  // for each count from 0 (infinite) to maxCount. Where two spheres merge at once, the count between has the error of
+  // the one above it. Cost: O(maxCount).
   std::vector<double> errors(Index maxCount) const;
 
   // The record itself, in the collapse's own space.

@@ -179,8 +179,8 @@ void Starter::addSurface() {
       weights[v] += weights_[t];
     }
   }
-  // Vertices with (next to) no surface weigh a little, so that they have a place; where there is no surface at all they
-  // share the whole. What is far outside the model's box pulls no more than what lies at its border.
+  // Vertices with (next to) no surface weigh a little, so that they have a position; where there is no surface at all
+  // they weigh 1 in total. What is far outside the model's box pulls no more than what lies at its border.
   const bool hasSurface = std::any_of(weights_.begin(), weights_.end(), [](double weight) { return weight > 0; });
   const double least = (hasSurface ? 1e-6 : 1) / static_cast<double>(points_.size());
   for (Index v = 0; v < points_.size(); ++v) {

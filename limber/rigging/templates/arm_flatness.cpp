@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kArmSeedReach = 0.04;  // heights
 
-// The ratio of the spreads of a cut along its longest way and across that.
+// The ratio of the spreads of a cut along its longest direction and across that.
 double flatnessOf(const BodySection& section) {
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
   for (const auto& [u, v] : section.cells) mean += Eigen::Vector2d(u, v);

@@ -17,14 +17,14 @@ struct BendTarget {
 };
 
 // The template in a pose that brings its joints to the targets (one or more), as near as people's joints bend;
-// templates that are no people bend freely. Firm targets that are the same on both sides give even poses.
+// templates that are no people bend freely. Firm targets that are the same on both sides give symmetric poses.
 //
-// size  of the whole template, against the one that stands: the height of a body that crouches says little about the
+// size  of the whole template, against the unbent one: the height of a body that crouches says little about the
 //       length of its legs
 // Cost: one whole-body solve.
 TemplateVariant bentTemplate(const TemplateSkeleton& skeleton, std::span<const BendTarget> targets, double size);
 
-// The size that a template was bent in; 1 of one that stands.
+// The size that a template was bent in; 1 of an unbent one.
 double sizeOf(const TemplateSkeleton& skeleton);
 
 // The template bent to its pins (#J, body space), in several sizes. None without pins.

@@ -14,7 +14,7 @@ namespace {
 // People and statues of people match by 8 to 10.5, anything else by less than 6.
 constexpr double kMatchOfDoubt = 6.6, kMatchSpread = 1.2, kCostOfDoubt = 1.8;
 constexpr double kFitGrid = 1.0 / 8192;  // heights
-constexpr double kMinLimb = 0.1;         // match of a limb that has a place
+constexpr double kMinLimb = 0.1;         // match of a limb, from which it counts as matched
 
 constexpr std::array<std::array<const char*, 4>, kFigureLimbs> kLimbJoints = {
     {{"leftUpperArm", "leftLowerArm", "leftHand", "leftHandTip"},

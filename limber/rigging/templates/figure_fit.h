@@ -15,11 +15,11 @@ bool isHumanoid(const TemplateSkeleton& skeleton);
 std::vector<FigurePin> figurePins(const TemplateSkeleton& skeleton, const TemplatePins& pins,
                                   const AnatomicalFrame& frame);
 
-// The humanoid template with its joints in the figure, but where they are pinned; its front the figure's, its cost by
-// how well the figure matches. A limb that hardly matches has no place; `limbs` says so.
+// The humanoid template with its joints in the figure, except where they are pinned; its front is the figure's, its
+// cost depends on how well the figure matches. A limb that hardly matches is left unmatched (TemplateLimb::hasMatch).
 //
 // pins   #J, in the body space of `frame`
-// frame  of the body: which way is up, where the ground is, its height
+// frame  of the body: its up direction, the ground, its height
 TemplateFit fitOfFigure(const TemplateSkeleton& skeleton, const MatchedFigure& figure, const TemplatePins& pins,
                         const AnatomicalFrame& frame);
 

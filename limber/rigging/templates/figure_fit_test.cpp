@@ -12,7 +12,7 @@ namespace {
 
 struct Crouching {
   MatchedFigure figure;
-  AnatomicalFrame frame;  // as the mesh stands: its middle is not the figure's
+  AnatomicalFrame frame;  // of the mesh as it is: its middle is not the figure's
 
   Crouching() {
     figure.figure = testing::crouchingFigure();
@@ -62,7 +62,7 @@ TEST(FigureFit, JointsStandInTheFigure) {
     EXPECT_LT(off(fit, "hips", figure.hips()), 0.02);
     EXPECT_TRUE(fit.skeleton.bent());
     EXPECT_EQ(missing(fit), 0u);
-    // Joints between lie on the way.
+    // Joints between others lie between them.
     const double toes = off(fit, "leftToes", figure.positions(2).ankle);
     EXPECT_GT(toes, 0.02);
     EXPECT_LT(toes, proportions::kFoot);

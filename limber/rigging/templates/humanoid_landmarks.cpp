@@ -12,7 +12,7 @@ namespace limber {
 
 namespace {
 
-// Heights, but for shares.
+// Heights, except for fractions.
 constexpr double kSeedReach = 0.04;
 constexpr double kWidestArm = 0.03;  // square heights of a cut
 constexpr double kMaxMoved = 0.06;

@@ -10,19 +10,19 @@
 
 namespace limber {
 
-// How the joints of a person stand to the shapes that show them. Heights, but for shares. tools/fit_template.cpp fits
-// these values.
+// Where the joints of a person are relative to the shapes that show them. Heights, except for fractions.
+// tools/fit_template.cpp fits these values.
 struct HumanoidProportions {
-  double hipAboveParting = 1.0;  // the legs' upper joints above the place where the legs part, half widths of a leg
+  double hipAboveParting = 1.0;  // the legs' upper joints above the point where the legs part, half widths of a leg
   double hipsBelow = 0.012;      // the hips, below the legs' upper joints
   double neckAboveShoulders = 0.025;
   double headAboveNeck = 0.055;
   double ankle = 0.02, ankleFraction = 0.05;  // of the height of the legs' upper joints
-  double knee = 0.49;                         // of the way from hip to ankle
-  double elbow = 0.475;                       // of the way from shoulder to hand, of straight arms
+  double knee = 0.49;                         // fraction of the path from hip to ankle
+  double elbow = 0.475;                       // fraction of the path from shoulder to hand, of straight arms
   double kneeForward = 0.35;                  // half depths of the leg before its middle
   double chestBack = 0.25;                    // half depths of the chest behind its middle
-  double upperChest = 0.73;                   // of the way from hips to neck
+  double upperChest = 0.73;                   // fraction of the path from hips to neck
 };
 
 // Where a template has the legs and arms of VRM's humanoid: the legs' upper joints go to where the legs part; knees,

@@ -7,7 +7,7 @@
 
 namespace limber {
 
-// Places the joints between anew, after others were moved: as the template has them between their placed neighbours.
+// Repositions joints between others once those were moved: as the template has them between placed neighbours.
 void placeBetween(const TemplateSkeleton& skeleton, std::vector<Vec3>& positions);
 
 }  // namespace limber

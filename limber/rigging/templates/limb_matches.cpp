@@ -13,14 +13,14 @@ namespace {
 constexpr double kNoMatch = 2.1;                    // mean cost of a limb's joints; up to 1.2 on people, 2 on toys
 constexpr double kSunken = 2, kSunkenDepth = 0.01;  // of the other side's depth, and heights more
 constexpr double kThinnest = 0.005;                 // heights that limbs are deep, at least
-// Least way of a head's top above the shoulders, over that from the hips to these: 0.35 and more on people and robots,
-// up to 0.2 where the head is cut off.
+// Least distance of a head's top above the shoulders, over that from the hips to these: 0.35 and more on people and
+// robots, up to 0.2 where the head is cut off.
 constexpr double kMinHead = 0.28;
 constexpr double kWithin = 0.04;  // heights
 constexpr double kAcross = 0.5;   // most cosine between a limb and what lies across from it
 
-// Whether the way across from the limb's last joint but the tip straight to that of the other side stays inside the
-// body. Along the limbs it may: so it does from hand to hand of stretched arms.
+// Whether the straight path from the limb's last joint but the tip across to that of the other side stays inside the
+// body. A path along the limbs may: from hand to hand of stretched arms it does.
 bool hasCommonEnd(const TemplateSkeleton& skeleton, const TemplateLimb& limb, const std::vector<Vec3>& positions,
                   const BodyVolume& body, const AnatomicalFrame& frame) {
   constexpr int kSteps = 24;
@@ -76,7 +76,7 @@ double depthOfEnd(const TemplateLimb& limb, const std::vector<Vec3>& positions, 
   return depth;
 }
 
-// Whether a limb ends far deeper in the body than that of the other side: it lies in the trunk, where that has a place.
+// Whether a limb ends far deeper in the body than that of the other side, and so lies in the trunk.
 bool isSunken(const TemplateSkeleton& skeleton, const TemplateLimb& limb, const std::vector<TemplateLimb>& limbs,
               const std::vector<Vec3>& positions, const BodyVolume& body, const AnatomicalFrame& frame) {
   if (limb.placed.size() < 3 || skeleton.joints[limb.placed.back()].role != TemplateRole::kTip) return false;

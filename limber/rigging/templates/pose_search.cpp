@@ -12,7 +12,7 @@ namespace limber {
 namespace {
 
 constexpr double kDoubtful = 1;         // cost of a fit from which it is bent
-constexpr double kWorthBending = 0.65;  // of the cost of the template that stands
+constexpr double kWorthBending = 0.65;  // of the cost of the unbent template
 constexpr double kMaxCost = 1.9;        // of a pose that nobody pinned
 constexpr double kHopeless = 1.5;       // times that cost: no limb that reaches for another end makes up for it
 constexpr int kMaxBends = 6;

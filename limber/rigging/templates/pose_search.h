@@ -1,4 +1,4 @@
-// The pose that a body stands in, where it is not the template's.
+// The pose of a body, where it is not the template's.
 #pragma once
 
 #include "limber/rigging/templates/template_fit.h"

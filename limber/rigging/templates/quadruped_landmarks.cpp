@@ -150,7 +150,7 @@ class QuadrupedMover {
     return LegFinder(body_, frame_, positions_, leg(legs[0]), leg(legs[1]));
   }
 
-  // The tallest part of the inside above and below a place.
+  // The tallest part of the inside in the column at (x, z).
   std::optional<Column> columnAt(double x, double z) const {
     const double step = 0.5 * body_.distance->spacing() / frame_.height;
     std::optional<Column> tallest;
@@ -165,7 +165,7 @@ class QuadrupedMover {
     return tallest;
   }
 
-  // Of a leg, on the way from where it parts to the back above it.
+  // Of a leg, at `fraction` of the height from where it parts to the back above it.
   Vec3 upperJoint(const LegFinder& finder, int side, double fraction) const {
     Vec3 position = finder.middle(side, finder.parting());
     const std::optional<Column> trunk = columnAt(0, position.z());

@@ -19,8 +19,8 @@ constexpr double kOutside = 40;           // for each height of a bone that runs
 constexpr double kOutsideDepth = 0.02;    // heights outside that count in full
 constexpr double kSample = 0.03;          // heights between two looks along a bone
 constexpr double kLongestBone = 0.7;      // heights
-constexpr double kOffMiddle = 1.5;        // for a place beside the deepest of its part
-constexpr double kPositionSpread = 0.22;  // heights, of joints about their place in the template
+constexpr double kOffMiddle = 1.5;        // for a position beside the deepest of its part
+constexpr double kPositionSpread = 0.22;  // heights, of joints about their position in the template
 constexpr double kTipSpread = 0.12;       // heights up, of tips on the ground and on top
 constexpr double kHandSpread = 0.3;       // of other tips
 constexpr double kNearEnd = 0.12;         // heights from the ground or the top
@@ -28,9 +28,9 @@ constexpr double kMiddleSpread = 0.02;    // heights, of joints of the middle to
 constexpr double kTipReach = 0.04;        // heights from an end of the model
 constexpr double kNoTip = 4;              // most that a tip away from every end costs
 constexpr double kNearPlane = 0.03;       // heights: such spheres count for the middle
-constexpr double kLineSpacing = 0.02;     // heights of places along the middle line
+constexpr double kLineSpacing = 0.02;     // heights between positions along the middle line
 constexpr double kWorstBone = 25;         // most that length and direction of a bone cost
-constexpr double kWorstTip = 5;           // of the way to a tip: stumps have no hands and feet
+constexpr double kWorstTip = 5;           // of the bone to a tip: stumps have no hands and feet
 
 constexpr double kPinnedEvenly = 1e-3;  // heights between a pin and the mirror image of its like
 
@@ -49,7 +49,7 @@ void checkJoints(const TemplateSkeleton& variant, std::size_t joints) {
 
 class TemplateEmbedder::Search {
  public:
-  // `skeleton` says which joints there are; their places do not matter yet.
+  // `skeleton` defines the joints; their positions do not matter yet.
   Search(const TemplateSkeleton& skeleton, const BodyVolume& body, const AnatomicalFrame& frame,
          const TemplatePins& pins, const EmbeddingOptions& options)
       : skeleton_(skeleton), body_(body), frame_(frame), pins_(pins), options_(options), half_(frame.symmetric()) {
@@ -167,7 +167,7 @@ class TemplateEmbedder::Search {
   }
 
   // Necks, heads and hips of bulky bodies lie where no medial sphere has its centre: for each height the deepest
-  // places between left and right.
+  // positions between left and right.
   void addMiddleLine() {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const MedialSphere& sphere : body_.spheres) {
@@ -370,7 +370,7 @@ class TemplateEmbedder::Search {
            bonePenalty(shapeOf(j), static_cast<float>(std::log(length)), (bone / length).cast<float>());
   }
 
-  // Of a joint at a place, and of the bones that meet there.
+  // Of a joint at a position, and of the bones that meet there.
   double costAround(Index j, const Candidate& position, const std::vector<Candidate>& found) const {
     double cost = positionPenalty(j, position);
     if (above_[j] != kNoIndex) cost += boneCost(j, found[above_[j]], position);
@@ -380,7 +380,7 @@ class TemplateEmbedder::Search {
     return cost;
   }
 
-  // Joints leave the candidates for places nearby that cost less, one after the other, by smaller and smaller steps.
+  // Joints leave the candidates for positions nearby that cost less, one after the other, by smaller and smaller steps.
   void descend(std::vector<Candidate>& found) const {
     for (const double step : kDescentSteps) {
       for (int round = 0; round < kDescentRounds; ++round) {

@@ -1,4 +1,4 @@
-// The places of a template's joints inside a model.
+// The positions of a template's joints inside a model.
 #pragma once
 
 #include <memory>
@@ -12,7 +12,7 @@
 
 namespace limber {
 
-using TemplatePins = std::vector<std::optional<Vec3>>;  // places in body space that are given, one for each joint
+using TemplatePins = std::vector<std::optional<Vec3>>;  // given positions in body space, one for each joint
 
 // Whether every pin has its mirror image: of the joint of the other side, of its own in the middle.
 bool pinnedEvenly(const TemplateSkeleton& skeleton, const TemplatePins& pins);
@@ -25,25 +25,25 @@ struct TemplateEmbedding {
 
 struct EmbeddingOptions {
   std::size_t maxSpheres = 1000;  // that are looked at, 1 or more
-  bool refine = true;             // joints may leave the spheres for places nearby that cost less
+  bool refine = true;             // joints may leave the spheres for positions nearby that cost less
 };
 
 // Embeds the placed joints at medial spheres and ends of the model, all at once, so that the sum of penalties is the
-// least that there is: for a bone's length and direction against the template's, for its way outside the model, for
-// places off the middle of a part, far from where the template has them, on the wrong side, and for tips that are no
-// end of the model. As penalties tie only a joint to the one above, the best embedding follows by dynamic programming
-// over the tree (Felzenszwalb, Huttenlocher 2005) where Baran and Popović (2007) search best-first. As theirs it is
-// then refined: the same penalties are lowered further by small steps of single joints. A symmetric body gets a
-// symmetric embedding: its middle and one side are embedded, the other side is their mirror image.
+// least that there is: for a bone's length and direction against the template's, for its length outside the model, for
+// positions off the middle of a part, far from those in the template, on the wrong side, and for tips that are no end
+// of the model. As penalties tie only a joint to the one above, the best embedding follows by dynamic programming over
+// the tree (Felzenszwalb, Huttenlocher 2005) where Baran and Popović (2007) search best-first. As theirs it is then
+// refined: the same penalties are lowered further by small steps of single joints. A symmetric body gets a symmetric
+// embedding: its middle and one side are embedded, the other side is their mirror image.
 //
-// A class, since bones between all pairs of places are measured once for all variants of a template.
+// A class, since bones between all pairs of positions are measured once for all variants of a template.
 class TemplateEmbedder {
  public:
   // Of this body, which must outlive it.
   //
   // skeleton  says which joints there are
   // pins      #J; Error kBadArgument where they are not
-  // Cost: O(S^2) ways through the body, for S spheres.
+  // Cost: O(S^2) paths through the body, for S spheres.
   TemplateEmbedder(const TemplateSkeleton& skeleton, const BodyVolume& body, const AnatomicalFrame& frame,
                    const TemplatePins& pins, const EmbeddingOptions& options = {});
   ~TemplateEmbedder();
@@ -54,7 +54,7 @@ class TemplateEmbedder {
   const AnatomicalFrame& frame() const { return frame_; }
   const TemplatePins& pins() const { return pins_; }
 
-  // variants  one template, or the same with joints in other places; one embedding for each
+  // variants  one template, or the same with joints at other positions; one embedding for each
   // Throws Error kBadArgument where variants do not have the same joints. Cost: O(J S^2) each.
   std::vector<TemplateEmbedding> embed(std::span<const TemplateVariant> variants);
 

@@ -15,8 +15,8 @@ constexpr double kUnexplained = 2;   // cost of a body that no bone comes near
 constexpr double kNearBone = 0.08;   // heights beyond the surface of a medial sphere
 constexpr double kFarFromBone = 0.25;
 
-// What speaks against a way to stand before the model is looked at: files mostly have +Y or +Z up, and the front
-// towards the viewer.
+// The cost of an orientation before the model is looked at: files mostly have +Y or +Z up, and the front towards the
+// viewer.
 double unusual(const AnatomicalFrame& frame) {
   const Vec3 up = frame.axes.row(1).transpose(), front = frame.axes.row(2).transpose();
   const bool yUp = up.y() > 0.9, zUp = up.z() > 0.9;
@@ -75,7 +75,7 @@ std::vector<TemplateFit> fitVariants(const std::vector<TemplateVariant>& variant
     const double cost = embeddings[v].cost + unusual(frame) + kUnexplained * left;
     fits.push_back({variants[v].skeleton, frame, embedder.pins(), std::move(embeddings[v]), cost, {}});
   }
-  // Feet point to the front, whichever way the rest of a body may be read; told once, by the best of them.
+  // Feet point to the front, whichever hypothesis fits the rest of a body; measured once, on the best fit.
   const TemplateFit& best = *std::min_element(fits.begin(), fits.end(), cheaper);
   const double forward = feetForward(body, frame, feetOf(best.skeleton, best.embedding.positions));
   for (TemplateFit& fit : fits) fit.cost += kFeetBackward * std::max(0.0, -forward);

@@ -17,7 +17,7 @@ struct TemplateFit {
   AnatomicalFrame frame;
   TemplatePins pins;
   TemplateEmbedding embedding;
-  double cost = 0;                  // of the embedding, the way to stand and what of the body is left over
+  double cost = 0;                  // of the embedding, the orientation and what of the body is left over
   std::vector<TemplateLimb> limbs;  // as embedded
 };
 
@@ -28,8 +28,8 @@ inline bool cheaper(const TemplateFit& a, const TemplateFit& b) {
 // One fit for each variant (one or more), all but their limbs.
 std::vector<TemplateFit> fitVariants(const std::vector<TemplateVariant>& variants, TemplateEmbedder& embedder);
 
-// How far a place (body space) is from all bones of a fit, beyond `radius` (heights): 0 near one, 1 where no bone comes
-// near.
+// How far a position (body space) is from all bones of a fit, beyond `radius` (heights): 0 near one, 1 where no bone
+// comes near.
 double farFromBones(const TemplateSkeleton& skeleton, const std::vector<Vec3>& positions, const Vec3& position,
                     double radius);
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kStraight = 0.05;      // radians that a chain turns at a joint that lies between
 constexpr double kMinBone = 0.04;       // heights of a bone whose end may be searched for
-constexpr double kSamePosition = 0.02;  // heights between a place and its mirror image
+constexpr double kSamePosition = 0.02;  // heights between a position and its mirror image
 
 struct SideWord {
   std::string_view left, right;

@@ -11,7 +11,7 @@
 
 namespace limber {
 
-// Where a joint's place comes from.
+// Where a joint's position comes from.
 enum class TemplateRole {
   kPlaced,   // searched for in the model
   kBetween,  // follows from the placed joints above and below it
@@ -32,8 +32,8 @@ struct TemplateSkeleton {
   std::string name;
   std::string summary;  // one line for --help
   std::vector<TemplateJoint> joints;
-  // #J, where the joints are as it stands, if their places are those of a pose; else empty. Places of a pose hold each
-  // for itself, neither side for the other.
+  // #J, the joints' positions in the neutral pose, if those of `joints` are of another pose; else empty. In another
+  // pose each side has its own positions, neither is the mirror image of the other.
   std::vector<Vec3> standing = {};
   bool bent() const { return !standing.empty(); }
 
@@ -59,10 +59,10 @@ struct TemplateVariant {
 // them; for a four-legged animal also with a low head and a long body; for a bird also as it flies.
 std::vector<TemplateVariant> templateVariants(const TemplateSkeleton& skeleton);
 
-// A user's skeleton as a template: places from its rest pose, as it stands (up is +Y, front +Z); joints that part the
-// tree, end it or bend it are placed, the others lie between; every leaf gets a tip, unless it
-// is one by its name ("..._end"). Sides are told by names (left and
-// right, .L and .R) and must mirror each other's places.
+// A user's skeleton as a template: positions from its rest pose, in its own orientation (up is +Y, front +Z); joints
+// that part the tree, end it or bend it are placed, the others lie between; every leaf gets a tip, unless it is one by
+// its name ("..._end"). Sides are inferred from names (left and right, .L and .R), and their positions must mirror each
+// other.
 // Throws Error kBadData naming the joint: as checkSkeleton does; no joint at all; all joints at one height.
 TemplateSkeleton templateFrom(const Skeleton& skeleton, std::string_view name);
 

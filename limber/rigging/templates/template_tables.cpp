@@ -21,7 +21,7 @@ struct Row {
   double lengthSpread, turnSpread;
 };
 
-// Places and spreads: means and deviations over artists' rigs (docs/template-rigs.md names them).
+// Positions and spreads: means and deviations over artists' rigs (docs/template-rigs.md names them).
 constexpr Row kHumanoid[] = {
     {"hips", "", 0, 0.50, 0, kPlaced, 0, 0},
     {"spine", "hips", 0, 0.565, 0, kBetween, 0, 0},

@@ -13,9 +13,9 @@
 
 namespace limber {
 
-// Each vertex keeps the shape of its neighbourhood up to a turn and one scale (as similar as possible), and neighbours
-// share it: as-rigid-as-possible surface modelling (Sorkine, Alexa 2007) with a scale for each vertex. The two steps of
-// that method are called in turn, with goals that change between.
+// Each vertex keeps the shape of its neighbourhood up to a rotation and one scale (as similar as possible), as near as
+// possible to those of its neighbours: as-rigid-as-possible surface modelling (Sorkine, Alexa 2007) with a scale for
+// each vertex. The two steps of that method are called in turn, with goals that change between.
 class ElasticSurface {
  public:
   // rest   the undeformed shape; cotangent weights, kept positive

@@ -8,7 +8,7 @@ namespace limber {
 
 namespace {
 
-// Of the covariance's trace: how much an affine map is held to be a shift.
+// Of the covariance's trace: how strongly an affine map is drawn towards a translation.
 constexpr double kPinnedToShift = 0.02;
 
 struct Moments {

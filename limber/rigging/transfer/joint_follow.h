@@ -9,15 +9,15 @@
 
 namespace limber {
 
-// Where joints are once the surface has moved: each by the affine map that takes the surface near it nearest to where
-// it is now. A vertex counts by its area over the fourth power of its distance, as far as it hangs on the joint, on the
-// one above it or on one right below; where too little of it lies round the joint to tell an affine map, the map is
-// nearer to a shift.
+// Positions of joints once the surface has moved: each by the affine map that brings the surface near it nearest to its
+// new position. A vertex counts by its area over the fourth power of its distance, as far as it is bound to the joint,
+// to its parent or to one of its children; where too little of it lies round the joint to determine an affine map, the
+// map is nearer to a translation.
 //
-// before   the surface as `places` (#J) lie in it
+// before   the surface in which the joints are at `positions` (#J)
 // after    #V, where its vertices are now
 // weights  of the surface's vertices over the skeleton's joints
-// Joints that no vertex hangs on move as the joint above does; roots then stay.
+// Joints without bound vertices move as their parent does; roots then stay.
 // Cost: O(#V slots + #J).
 std::vector<Vec3> followSurface(const Skeleton& skeleton, std::span<const Vec3> positions, const TriMesh& before,
                                 std::span<const Vec3> after, const SkinWeights& weights);

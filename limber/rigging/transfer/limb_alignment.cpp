@@ -90,8 +90,8 @@ class Alignment {
     double weight = 0;
   };
 
-  // The nearest joints with a landmark on each way down from `from`, which count by nearness: hips lie by the legs, not
-  // between head and hands.
+  // The nearest joints with a landmark on each path down from `from`, which count by nearness: hips lie by the legs,
+  // not between head and hands.
   void addBelow(Index from, Index joint, Below& below) const {
     for (const Index child : children_[joint]) {
       if (!target_[child]) {
@@ -154,7 +154,7 @@ class Alignment {
       there += (*target_[child] - position).norm();
     }
     Mat3 stretch = Mat3::Identity();
-    // Where ways down part, as at hips, the sum of them is no direction to stretch along.
+    // Where the paths down part, as at hips, the sum of their directions is no direction to stretch along.
     if (rest > 0 && along.norm() > 0.9 * rest) {
       const double ratio = std::clamp(there / (rest * whole_.scale), kMinStretch, kMaxStretch);
       along.normalize();
@@ -169,7 +169,7 @@ class Alignment {
   const Skeleton& skeleton_;
   Similarity whole_;
   std::vector<Vec3> rest_;
-  double minSquare_ = 0;  // squared distance, so that a joint in the place of another counts finitely
+  double minSquare_ = 0;  // squared distance, so that a joint at the position of another counts finitely
   std::vector<std::vector<Index>> children_;
   std::vector<std::optional<Vec3>> target_;
 };
@@ -200,7 +200,7 @@ std::vector<Quat> turnsBetween(const Skeleton& skeleton, std::span<const Affine>
                                std::span<const Vec3> positions, const Quat& whole) {
   std::vector<Mat3> correlations(skeleton.jointCount(), Mat3::Zero());
   std::vector<Quat> turns;
-  // Ways below a joint, before they are turned as the joint above it is.
+  // Directions below a joint, before the rotation of its parent is applied.
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
     if (const std::optional<Index> parent = skeleton.joints[j].parent) {
       correlations[*parent] +=

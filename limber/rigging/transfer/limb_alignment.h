@@ -1,4 +1,4 @@
-// A skeleton laid along the limbs of another body, and what each joint does to the surface round it on the way.
+// A skeleton laid along the limbs of another body, and how each joint thereby deforms the surface round it.
 #pragma once
 
 #include <span>
@@ -15,10 +15,11 @@ struct JointLandmark {
   Vec3 position = Vec3::Zero();
 };
 
-// places     #J, where each joint comes to lie
-// rotations  #J, by which what it carries is turned
-// maps       #J, from the source's space to the target's: the turn, and a stretch that brings it to the joints below
-// whole      the similarity of the whole body, for what no joint holds
+// positions  #J, of each joint in the target
+// rotations  #J, of what each joint carries
+// maps       #J, from the source's space to the target's: the rotation, and a stretch that brings it to the joints
+//            below
+// whole      the similarity of the whole body, for vertices that no joint influences
 struct LimbAlignment {
   std::vector<Vec3> positions;
   std::vector<Quat> rotations;
@@ -26,21 +27,21 @@ struct LimbAlignment {
   Affine whole = Affine::Identity();
 };
 
-// Joints with a landmark come to lie there. Those between joints with landmarks keep their place along the way from one
-// to the next, those above all go along with the landmarks below, and those below all with the last joint that has one.
-// A joint turns as little as the joints below it allow, against the joint above it; across a limb the scale is that of
-// the whole body, along it (0.4 to 2.5 times that) what brings the next joint to its place.
+// Joints with a landmark are moved there. Those between joints with landmarks keep their position along the path from
+// one to the next, those above all move with the landmarks below, and those below all with the last joint that has one.
+// A joint rotates as little as the joints below it allow, against its parent; across a limb the scale is that of the
+// whole body, along it (0.4 to 2.5 times that) what brings the next joint to its position.
 //
 // globals  #J, of the skeleton at rest
 // Throws Error kBadArgument for fewer than three landmarks, for one of a joint that is not there or has one already.
 LimbAlignment alignLimbs(const Skeleton& skeleton, std::span<const Affine> globals,
                          std::span<const JointLandmark> landmarks);
 
-// Joints at rest in the places of the alignment, each turned as it turns them: names, tree, axes and scales are kept.
+// The rest skeleton at the alignment's positions, with its rotations: names, tree, axes and scales are kept.
 Skeleton movedSkeleton(const Skeleton& skeleton, std::span<const Affine> globals, std::span<const Vec3> positions,
                        std::span<const Quat> rotations);
 
-// How joints turn when they come to lie at `places`, all of them known. `whole` turns the roots.
+// Rotations of joints that move to `positions`, all of them known. `whole` is that of the roots.
 std::vector<Quat> turnsBetween(const Skeleton& skeleton, std::span<const Affine> globals,
                                std::span<const Vec3> positions, const Quat& whole);
 

@@ -134,7 +134,7 @@ class GirthFit {
     return along.squaredNorm() > 0 ? Vec3(along.normalized()) : Vec3(Vec3::Zero());
   }
 
-  // Scales about a place, but not along the unit vector; a zero vector: in all directions.
+  // Scales about a position, but not along the unit vector; a zero vector: in all directions.
   static Affine about(const Vec3& position, double scale, const Vec3& along) {
     Affine result = Affine::Identity();
     result.linear() = scale * Mat3::Identity() + (1 - scale) * along * along.transpose();

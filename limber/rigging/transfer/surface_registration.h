@@ -11,7 +11,7 @@
 namespace limber {
 
 struct RegistrationOptions {
-  // Lengths over which a pull at one place of the surface spreads, from coarse to fine; parts of the target's longest
+  // Lengths over which a pull at one point of the surface spreads, from coarse to fine; parts of the target's longest
   // side.
   std::vector<double> reaches = {0.2, 0.1, 0.05, 0.025, 0.0125};
   int rounds = 4;  // of correspondences and solves at each reach, 1 or more

@@ -21,9 +21,9 @@ Affine wholeSimilarity(const TriMesh& source, const TriMesh& target, const Quat&
 // The alignment that moves everything by one similarity.
 LimbAlignment alignWhole(std::span<const Affine> globals, const Affine& similarity);
 
-// How far the surfaces lie apart, both ways, as the root of the mean square over at most 2000 vertices of each, to the
-// nearest point that faces about the same direction; from a tenth of the target's longest side on a vertex counts as
-// that. Parts of the target's longest side.
+// The distance between the surfaces, in both directions, as the root of the mean square over at most 2000 vertices of
+// each, to the nearest point that faces about the same direction; from a tenth of the target's longest side on a vertex
+// counts as that. Parts of the target's longest side.
 double surfacesApart(const TriMesh& source, const TriMesh& target);
 
 }  // namespace limber

@@ -14,9 +14,9 @@ namespace limber {
 WeightResult nearestBoneWeights(const TriMesh& mesh, std::span<const Bone> bones, const WeightOptions& options,
                                 Progress& progress);
 
-// Envelopes, as character animation has used them before surfaces were asked: a bone holds what lies within its inner
-// radius, and less and less up to its outer one, as the square of the way that is left. A bone's inner radius is the
-// median distance of the vertices that are nearest to it, the outer one twice that. Weights of several bones are
+// Envelopes, as character animation has used them without regard to the surface: a bone has full weight within its
+// inner radius, and less and less up to its outer one, as the square of the remaining distance. A bone's inner radius
+// is the median distance of the vertices that are nearest to it, the outer one twice that. Weights of several bones are
 // scaled to a sum of 1; a vertex in no envelope follows its nearest bone, and is counted in the warning
 // `outside-envelopes`. Cost: O(#V #B), in parallel.
 WeightResult envelopeWeights(const TriMesh& mesh, std::span<const Bone> bones, const WeightOptions& options,

@@ -253,7 +253,7 @@ TEST(BoneHeat, BonesOfOneJointActAsOne) {
 }
 
 TEST(BoneHeat, TheNearerSphereIsTheOneWhoseSurfaceIsNearer) {
-  // The big sphere's surface reaches farther than half way, though the small one's centre is nearer there.
+  // The big sphere's surface reaches farther than halfway, though the small one's centre is nearer there.
   const TriMesh tube = testing::tube(12, 41, true);
   const Bone bones[] = {ball(0, {-0.3, 0, 0}, 0.3), ball(1, {0.3, 0, 0}, 0.05)};
   const SkinWeights weights = weightsOf(tube, bones).weights;

@@ -29,7 +29,7 @@ class HeatSolver {
   // Orders the unknowns; needs only where the heat can flow.
   HeatSolver(MakeLaplacian makeLaplacian, Index directBelow, float tolerance = kTolerance);
 
-  // Vertices without a way to any source get weight 0.
+  // Vertices without a path to any source get weight 0.
   void factorize(const HeatSources& sources);
 
   // The strongest influences of every vertex; rows of vertices that no heat reaches are empty.
@@ -43,15 +43,15 @@ class HeatSolver {
   static constexpr Index kBlock = SparseCholesky::kColumns;  // joints solved side by side
   static_assert(kBlock == Multigrid::kColumns);
 
-  // Called for blocks of at most kBlock joints in any order, one at a time. With what multigrid found; or with
-  // #V rows of kBlock, row r for the vertex with place r of the factorisation; columns after the last joint are 0.
+  // Called for blocks of at most kBlock joints in any order, one at a time. With what multigrid found; or with #V rows
+  // of kBlock, row r for the vertex at position r of the factorisation; columns after the last joint are 0.
   using SettledVisitor = std::function<void(std::span<const Index> joints, const Multigrid::Scratch& found)>;
   using SolvedVisitor = std::function<void(std::span<const Index> joints, const double* x)>;
 
   bool solveByMultigrid(const SettledVisitor& visit);  // false where some block did not settle: it is factored then
   void holdSources();
   void solveDirectly(const SolvedVisitor& visit) const;
-  std::vector<std::span<const Index>> blocks() const;  // heldJoints_, at most kBlock at a time
+  std::vector<std::span<const Index>> blocks() const;  // influencingJoints_, at most kBlock at a time
   void gatherPulls(const HeatSources& sources);
   std::span<const Multigrid::Entry> pullsOf(Index joint) const {
     return {pulls_.data() + firstPull_[joint], firstPull_[joint + 1] - firstPull_[joint]};

@@ -13,7 +13,7 @@ namespace limber {
 namespace {
 
 constexpr std::size_t kSourceRange = 1024;  // vertices of one parallel piece of work
-constexpr std::size_t kGroup = 32;  // vertices, likely neighbours, that share an order of bones; divides kSourceRange
+constexpr std::size_t kGroup = 32;  // vertices, likely neighbours, that use one order of bones; divides kSourceRange
 // Surfaces closer than this to either end of a line of sight do not block it: layers that touch, bones that end on the
 // surface. In longest sides.
 constexpr double kSightMargin = 1e-5;

@@ -19,9 +19,9 @@ struct HeatSourceOptions {
 };
 
 // For vertex v the joints first[v] to first[v + 1] of `joints`, ascending and different, each pull with `pull[v]`,
-// c / d^2 where d is the distance to the nearest bone's axis. With `facing`, distances are divided by (1 + cos) / 2 of
-// the angle between the way from the bone and the outward normal: the inner side of a thigh is not held by the other
-// leg's bone, however near that is. A vertex that sees no bone has none and pull 0.
+// which is c / d^2 where d is the distance to the nearest bone's axis. With `facing`, distances are divided by (1 +
+// cos) / 2 of the angle between the direction from the bone and the outward normal: the inner side of a thigh is not
+// bound to the other leg's bone, however near that is. A vertex that sees no bone has none and pull 0.
 struct HeatSources {
   std::vector<double> pull;   // #V
   std::vector<Index> first;   // #V + 1

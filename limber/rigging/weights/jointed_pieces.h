@@ -16,14 +16,14 @@ namespace limber {
 
 // The joint that each piece follows whole, where every joint that has a bone has a piece of its own; none otherwise.
 //
-// A part turns about its joint, so the joint lies in the part or at its end, and in the part that carries it, too. A
-// piece can belong to a joint that lies in it or near it, or to the joint that two such joints hang on. Of all ways to
-// give each joint one piece of its own the best is the one in which pieces belong to the joints that carry all others
+// A part rotates about its joint, so the joint lies in the part or at its end, and in the part that carries it, too. A
+// piece can belong to a joint that lies in it or near it, or to the joint that is the parent of two such joints. Of all
+// assignments of one piece to each joint the best is the one in which pieces belong to the joints that carry all others
 // that they touch (cheapestPairs). Then the other pieces: those that touch joints follow the joint that carries all of
 // these; those that touch none, such as ears, follow what they overlap, or what they lie on.
 //
-// A skeleton whose joints all hang on one tells nothing about which part carries which: there the parts tell, which
-// touch each other's joints, from the largest on.
+// A skeleton whose joints are all children of one does not define which part carries which: there this is inferred from
+// the parts that touch each other's joints, from the largest on.
 //
 // mesh   any; pieces may be open, and turned inside out
 // piece  #V, from vertexComponents; pieceCount of them

@@ -1,4 +1,4 @@
-// Which way is out, on meshes whose faces do not agree about it.
+// The outward direction, on meshes whose faces do not agree about it.
 #pragma once
 
 #include <vector>

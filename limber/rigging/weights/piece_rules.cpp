@@ -10,11 +10,11 @@ namespace limber {
 
 namespace {
 
-constexpr double kPartsFraction = 0.6;   // mean top share from which a model is one of parts
+constexpr double kPartsFraction = 0.6;   // mean largest weight from which a model is one of parts
 constexpr double kPiecesPerJoint = 0.5;  // of which it then has at least so many
 constexpr double kSightOfParts = 0.05;   // vertices of a piece that must see a bone
 constexpr double kSightOfSkin = 0.25;
-constexpr double kRigidPart = 0.62;  // top share of a piece from which it is rigid
+constexpr double kRigidPart = 0.62;  // largest weight of a piece from which it is rigid
 constexpr double kRigidTrinket = 0.8;
 constexpr double kTrinketArea = 0.1;  // of the model
 constexpr double kBallCenter = 0.12;  // diagonals from the middle of a piece to the joint it is the ball of

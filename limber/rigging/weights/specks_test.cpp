@@ -16,7 +16,7 @@ TriMesh body() {
   return testing::moved(testing::tube(40, 16, true), {1, 2, 2}, Vec3f::Zero());
 }
 
-// Three triangles round a vertex, 3 hundredths wide, at a place and turned anyhow.
+// Three triangles round a vertex, 3 hundredths wide, at a position and randomly rotated.
 TriMesh speck(const Vec3f& at, std::mt19937& random) {
   const Quat turn =
       Quat(Vec4(1.0 * (random() % 100) - 50, 1.0 * (random() % 100) - 50, 1.0 * (random() % 100) - 50, 7)).normalized();

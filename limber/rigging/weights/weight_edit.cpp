@@ -8,7 +8,7 @@ namespace limber {
 namespace {
 
 constexpr int kSmoothPasses = 12;  // at full strength a step from 0 to 1 is spread over some eight edges
-// Of the way to the mean, at most: a whole step lets neighbours swap their weights back and forth.
+// Of the step to the mean, at most: a whole step lets neighbours swap their weights back and forth.
 constexpr double kSmoothStep = 0.6;
 
 double sumOf(std::span<const Influence> influences) {

@@ -14,7 +14,7 @@ namespace limber {
 inline constexpr Index kMaxSlots = 8;  // of WeightOptions::maxInfluences
 
 // Throws Error kBadArgument for no bones, for a mesh without triangles (ErrorKind::kNoSurface) and for maxInfluences
-// outside 1 to kMostSlots.
+// outside 1 to kMaxSlots.
 void checkWeightArguments(const TriMesh& mesh, std::span<const Bone> bones, const WeightOptions& options);
 
 // From a point to a bone's surface, 0 within it.

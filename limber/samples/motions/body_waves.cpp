@@ -80,7 +80,7 @@ constexpr double kSwimSeconds = 0.8, kSwimMetres = 0.5;             // of a beat
 constexpr double kSwimWave = 1.1;                                   // metres from crest to crest
 constexpr double kSwimHead = 0.03, kSwimTail = 0.11;                // metres to each side
 constexpr double kSlitherSeconds = 1.2, kSlitherWave = 0.6;         // metres along the body from crest to crest
-constexpr double kSlitherAngle = 0.75;                              // radians, of the body to its way
+constexpr double kSlitherAngle = 0.75;                              // radians, of the body to its direction of travel
 constexpr double kFlapSeconds = 0.7, kFlap = 0.6, kFlapBob = 0.04;  // radians up and down; metres
 
 // To the side at z, and its slope, of the wave through a fish.

@@ -1,6 +1,6 @@
-// Gaits of the sample person. Of the walk, shares of a stride and the body's sways are after measured gait (Perry 1992;
-// Winter 1991): a foot stands for 62 % of a stride, first on the heel, then flat, then on the toes. Duty factors: 0.6
-// and more in a walk, 0.35 in a run (Alexander, Principles of Animal Locomotion, 2003).
+// Gaits of the sample person. Of the walk, fractions of a stride and the body's sways are after measured gait (Perry
+// 1992; Winter 1991): a foot is in stance for 62 % of a stride, first on the heel, then flat, then on the toes. Duty
+// factors: 0.6 and more in a walk, 0.35 in a run (Alexander, Principles of Animal Locomotion, 2003).
 #include <algorithm>
 #include <cmath>
 
@@ -122,7 +122,7 @@ double cosineWave(double phase) {
   return std::cos(2 * kPi * phase);
 }
 
-// One foot of a gait; `mirrored` on the right, where the path turns the other way.
+// One foot of a gait; `mirrored` on the right, where the gait's turn is negated.
 class Foot {
  public:
   Foot(const BipedGait& gait, bool mirrored)
@@ -186,7 +186,7 @@ ArmPose armAt(const BipedGait& gait, double strides) {
           gait.arm.elbow + gait.armSwing.elbow * forward};
 }
 
-// Highest over the standing foot where one always stands, else in the middle of the flight.
+// Highest over the foot in stance where one always is, else in the middle of the flight.
 double pelvisHeight(const BipedGait& gait, double strides) {
   if (gait.dutyFactor > 0.5) return gait.hipHeight - gait.bob * cosineWave(2 * (strides - 0.05));
   const double steps = 2 * strides;

@@ -1,4 +1,4 @@
-// Sample motions through key poses: jumping jack, jump, idle, wave, sit down. Angles in radians, places in metres.
+// Sample motions through key poses: jumping jack, jump, idle, wave, sit down. Angles in radians, positions in metres.
 #include <vector>
 
 #include "limber/core/text/numbers.h"

@@ -1,5 +1,5 @@
-// Sample motions as recipes: how the figure stands at each moment. What walks is a gait, a table of where and when feet
-// are planted; what else there is passes through key poses.
+// Sample motions as recipes: the figure's pose at each time. Walks and runs are gaits, tables of where and when feet
+// are planted; all other motions pass through key poses.
 #pragma once
 
 #include <span>
@@ -9,24 +9,24 @@
 
 namespace limber {
 
-// A way to go on two legs. Shares are of a stride (two steps), from a foot's touch; the right foot is half a stride
-// behind the left.
+// A bipedal gait. Fractions are of a stride (two steps), from a foot's touch; the right foot is half a stride behind
+// the left.
 struct BipedGait {
   double seconds;   // of a stride
   double stride;    // metres forward a stride
   double turn = 0;  // radians about +Y a stride
 
-  // Each foot. The duty factor is the share that it is on the ground: above 0.5 both feet are at times, below it none
-  // is, and the body flies. `flat` and `heelUp` are when the sole is flat down and when the heel leaves the ground;
-  // `ahead` is how far before the body a foot comes down.
+  // Each foot. The duty factor is the fraction that it is on the ground: above 0.5 both feet are at times, below it
+  // none is, and the body flies. `flat` and `heelUp` are when the sole is flat down and when the heel leaves the
+  // ground; `ahead` is how far before the body a foot comes down.
   double dutyFactor, flat, heelUp, ahead;
   double side, outward;                   // from the middle, metres; toes outwards, radians
   double touchPitch, offPitch, offSpeed;  // radians (toes up) at touch and at toe-off, and radians a stride then
-  double lift, liftAt, swingPitch = 0;    // in the air: metres, when as a share of the swing, radians more
+  double lift, liftAt, swingPitch = 0;    // in the air: metres, when as a fraction of the swing, radians more
 
   double hipHeight, bob = 0;   // metres; the bob is of gaits that never fly
   double sway = 0, surge = 0;  // metres to the standing foot, and forward and back
-  // As they are held, and how far they swing to and fro with the legs.
+  // Mean rotations, and how far they swing to and fro with the legs.
   BodyTurn hips = {}, hipsSwing = {}, chest = {}, chestSwing = {}, head = {}, headSwing = {};
   ArmPose arm = {}, armSwing = {};
 };
@@ -57,12 +57,12 @@ extern const KeyedMotion kJumpingJack, kJump, kIdle, kWave, kSitDown;
 // With the names and about the proportions of the template quadruped, standing, facing +Z.
 Skeleton quadrupedSkeleton();
 
-// A way to go on four legs; shares are of a stride.
+// A quadrupedal gait; fractions are of a stride.
 struct QuadrupedGait {
   double seconds, stride;                             // of a stride; metres
-  double dutyFactor;                                  // the share that each leg is on the ground
+  double dutyFactor;                                  // the fraction that each leg is on the ground
   double leftHind, leftFront, rightHind, rightFront;  // when each leg touches
-  double onGround;          // the share of each bounce in which any leg is on the ground; 1 for a gait that never flies
+  double onGround;          // fraction of each bounce in which any leg is on the ground; 1 for a gait that never flies
   int bounces;              // of the body a stride
   double lift, sinks;       // metres: of a paw in the air; of the body below its rest pose where it leaves the ground
   double bob, sway, swing;  // metres, metres, radians to the side with the hind legs
@@ -77,7 +77,7 @@ struct QuadrupedFoot {
   double lean = 0, toesTurn = 0;
 };
 
-// The leg ("leftHind") of a body whose trunk stands as `globals` have it; `rest` are the skeleton's own.
+// The leg ("leftHind") of a body whose trunk is posed by `globals`; `rest` are the skeleton's own.
 void placeQuadrupedLeg(const Skeleton& quadruped, const std::string& leg, const QuadrupedFoot& foot,
                        std::span<const Affine> rest, std::span<const Affine> globals, Pose& pose);
 

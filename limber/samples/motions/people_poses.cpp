@@ -1,4 +1,4 @@
-// Sample poses of a person. Angles in radians, places in metres.
+// Sample poses of a person. Angles in radians, positions in metres.
 #include "limber/samples/motions/motion_recipes.h"
 #include "limber/samples/motions/pose_recipes.h"
 #include "limber/samples/motions/stances.h"

@@ -1,4 +1,4 @@
-// Sample poses as recipes: a stance of the sample person, or how the sample animal stands.
+// Sample poses as recipes: a stance of the sample person, or a pose of the sample animal.
 #pragma once
 
 #include "limber/samples/figure.h"

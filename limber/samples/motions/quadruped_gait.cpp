@@ -97,14 +97,14 @@ Quat turnAbout(const Vec3& axis, double angle) {
   return Quat(Eigen::AngleAxisd(angle, axis));
 }
 
-// The share of a swing that has passed; outside 0 to 1 the leg stands.
+// The fraction of a swing that has passed; outside 0 to 1 the leg is in stance.
 double swingOf(const QuadrupedGait& gait, double phase) {
   return (phase - gait.dutyFactor) / (1 - gait.dutyFactor);
 }
 
-// How far the last bone leans forward over its toes, radians: more and more while it stands, then back in the air.
+// How far the last bone leans forward over its toes, radians: increasing in stance, then back in the air.
 double leanAt(const QuadrupedGait& gait, double phase, bool front) {
-  constexpr double kFrontLeans = 0.54;  // share of its time on the ground after which a front foot begins to lean
+  constexpr double kFrontLeans = 0.54;  // fraction of its time on the ground after which a front foot begins to lean
   const double stood = phase / gait.dutyFactor, swing = swingOf(gait, phase);
   const double standing =
       front ? 0.45 * smoothRise((stood - kFrontLeans) / (1 - kFrontLeans)) : 0.5 * smoothRise(stood) - 0.2;

@@ -1,4 +1,4 @@
-// Sample poses of an animal on four legs. Angles in radians, places in metres.
+// Sample poses of an animal on four legs. Angles in radians, positions in metres.
 #include <string>
 
 #include "limber/samples/motions/motion_recipes.h"

@@ -29,7 +29,7 @@ Pose quadrupedPose(const Skeleton& quadruped, double seconds) {
 
 template <const BipedGait& gait>
 SampleMotion onTwoLegs(std::string_view name, std::string_view summary) {
-  const double wholeTurn = gait.turn == 0 ? 1 : 2 * kPi / gait.turn;  // strides until it faces the same way again
+  const double wholeTurn = gait.turn == 0 ? 1 : 2 * kPi / gait.turn;  // strides until it faces the same direction again
   return {name, summary, wholeTurn * gait.seconds, &figureSkeleton, &gaitPose<gait>};
 }
 

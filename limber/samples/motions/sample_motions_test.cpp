@@ -142,7 +142,7 @@ TEST_P(SampleMotions, ElbowsOnlyBendForwardsAndNothingIsBelowTheFloor) {
   }
 }
 
-// A thigh turns about its own length a little further than the hips do, whichever way the body faces.
+// A thigh twists a little further than the hips do, whatever direction the body faces.
 TEST_P(SampleMotions, ThighsAreNotWrung) {
   if (!isPerson()) return;
   for (int f = 0; f < frames(); ++f) {
@@ -175,7 +175,7 @@ INSTANTIATE_TEST_SUITE_P(All, SampleMotions, ::testing::ValuesIn(sampleMotions()
                            return name;
                          });
 
-// Where a place of the body goes in a frame, along its bone and across it.
+// How far a joint of the body moves in a frame, along its bone and across it.
 TEST(Slither, SlipsAlongItsBodyAlone) {
   const Skeleton serpent = serpentSkeleton();
   for (double seconds = 0; seconds < kSlitherPeriod; seconds += 0.05) {
@@ -265,7 +265,7 @@ TEST(Walk, IsSymmetric) {
   }
 }
 
-// The share of the cycle that each leg's toes are on the ground, and when they touch, as a share of the cycle.
+// The fraction of the cycle that each leg's toes are on the ground, and when they touch, as a fraction of the cycle.
 struct Footfall {
   double fraction, touches;
 };

@@ -21,8 +21,8 @@ Value between(const Knot<Value>& from, const Knot<Value>& to, double seconds, do
          s3 * s2 * (6 * displacement - 3 * v0 - 3 * v1 - 0.5 * a0 + 0.5 * a1);
 }
 
-// From `from`, where it has that speed and acceleration, to `to`, where it rests; `share` 0 to 1. Speed and
-// acceleration per whole way.
+// From `from`, where it has that speed and acceleration, to `to`, where it rests; `fraction` 0 to 1. The unit of time
+// of speed and acceleration is the whole path's duration.
 template <typename Value>
 Value smoothPath(const Value& from, const Value& speed, const Value& acceleration, const Value& to, double fraction) {
   const Value none = 0 * from;
@@ -31,8 +31,8 @@ Value smoothPath(const Value& from, const Value& speed, const Value& acceleratio
 
 inline constexpr double kGravity = 9.81;  // metres a second squared
 
-// How high a body is above where it leaves the ground, metres, that is on the ground for the share `onGround` of each
-// `period` (seconds), pressed down as by a spring, and in free fall for the rest; `phase` 0 to 1 from its landing.
+// How high a body is above where it leaves the ground, metres, that is on the ground for the fraction `onGround` of
+// each `period` (seconds), pressed down as by a spring, and in free fall for the rest; `phase` 0 to 1 from its landing.
 inline double bounceHeight(double phase, double onGround, double period) {
   const double ground = onGround * period, air = period - ground, time = phase * period;
   const Knot<double> landing{0, -0.5 * kGravity * air, -kGravity}, leaving{0, 0.5 * kGravity * air, -kGravity};

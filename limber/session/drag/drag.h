@@ -10,7 +10,7 @@
 
 namespace limber {
 
-// A joint that does what the dragged one does: the same way or, as its mirror image, reflected.
+// A joint that moves or rotates as the dragged one does, reflected if it is its mirror image.
 struct DragFollower {
   Index joint = 0;
   Mat3 reflection = Mat3::Identity();           // of directions in world space
@@ -23,7 +23,7 @@ struct DragScene {
   const JointLimits* limits = nullptr;
   Pose start;
   bool ik = false;
-  std::vector<PinnedTarget> pinned;  // joints that hold on to a place, with inverse kinematics on
+  std::vector<PinnedTarget> pinned;  // joints pinned while inverse kinematics is on
   double rollRadius = 1;             // metres: a root that the pointer moves this far rolls by one radian
   std::string_view solver = kLimbSolver;
   std::vector<DragFollower> followers = {};
@@ -37,8 +37,8 @@ class Drag {
 
   // The pose when the pointer is there; it depends on nothing that happened between. None where the ray does not meet
   // the plane in which the joint is dragged. Errors as of the constructor. Cost: that of a pose and, with inverse
-  // kinematics, of a solve: well under a millisecond at 100 joints. `snapping`: the joint's place, or its turn, is the
-  // nearest round one.
+  // kinematics, of a solve: well under a millisecond at 100 joints. `snapping`: the joint's position or rotation is
+  // the nearest round one.
   std::optional<Pose> at(const Ray& ray, const Vec3& view, bool snapping = false);
 
   // The pose with the joint moved by that offset in the world, from where it stood at the start: pulled by its limb in

@@ -1,4 +1,4 @@
-// Inverse kinematics under a user's finger: limbs that follow a joint, and joints that hold on to a place.
+// Inverse kinematics under a user's finger: limbs that follow a joint, and pinned joints.
 #pragma once
 
 #include <optional>
@@ -18,7 +18,7 @@ struct PinnedTarget {
   std::optional<Quat> rotation = std::nullopt;  // global, of a joint that must not tilt either: a foot on the ground
 };
 
-// One for each joint: in place of that which the joint had.
+// One for each joint: replaces the joint's previous one.
 void setTarget(std::vector<PinnedTarget>& targets, const PinnedTarget& target);
 void eraseTarget(std::vector<PinnedTarget>& targets, Index joint);
 
@@ -36,9 +36,9 @@ class LimbPull {
 
   // Whether any joint has a limb to turn.
   bool any() const { return solver_.has_value(); }
-  // `targets` are those of the constructor, at other places. `pose` is the start and becomes the answer; the same start
-  // and targets give the same answer. A joint with a rotation turns there once its limb has reached. Throws Error as
-  // IkSystem::load does.
+  // `targets` are those of the constructor, at other positions. `pose` is the start and becomes the result; the same
+  // start and targets give the same result. A joint with a target rotation is rotated there once its limb has reached.
+  // Throws Error as IkSystem::load does.
   void solve(Pose& pose, std::span<const PinnedTarget> targets);
 
  private:

@@ -16,9 +16,9 @@ class LiveCharacter {
   // Throws Error as matchSkeletons does.
   LiveCharacter(std::shared_ptr<const RiggedModel> rig, Skeleton source);
 
-  // The character's pose (#J locals) when the source stands so (locals of all its joints), at that moment in seconds,
-  // which rises. The first frame tells where the source's ground is. Throws Error kBadArgument for another number of
-  // joints. Cost after the first frame: that of one frame of limb-ik.
+  // The character's pose (#J locals) for this pose of the source (locals of all its joints), at that time in seconds,
+  // which increases from call to call. The source's ground is measured in the first frame. Throws Error kBadArgument
+  // for another number of joints. Cost after the first frame: that of one frame of limb-ik.
   const Pose& next(const Pose& source, double seconds);
 
   // The source's frames of the last minutes, at most 36,000, as one clip "live".

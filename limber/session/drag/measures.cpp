@@ -28,7 +28,7 @@ float weightOf(const SkinWeights& weights, Index vertex, Index joint) {
   return sum;
 }
 
-// No joint stands twice among a vertex's used slots.
+// No joint occurs twice among a vertex's used slots.
 double difference(const SkinWeights& weights, Index a, Index b) {
   double sum = 0;
   for (Index k = 0; k < weights.slots; ++k) {

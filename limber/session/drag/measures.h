@@ -1,4 +1,4 @@
-// Figures of a session as it stands, by which methods can be compared on a model that nobody has rigged before.
+// Figures of a session's current state, by which methods can be compared on a model that has no reference rig.
 #pragma once
 
 #include <optional>
@@ -10,12 +10,12 @@ namespace limber {
 
 struct SessionMeasures {
   Index joints = 0;
-  double influences = 0;  // joints that hold a vertex by more than 1/256, mean
+  double influences = 0;  // joints with a weight above 1/256 at a vertex, mean
   double smoothness = 0;  // sum over joints of |w_a - w_b|, 0 to 2, mean over the triangles' sides
   // In the pose, against the model as bound.
-  double stretch = 0;                    // how much sides are longer or shorter, as a share of their length, mean
-  double volume = 0;                     // what the surface holds: 0.1 is a tenth more; 0 where it holds nothing
-  std::optional<double> targetDistance;  // metres from where held joints shall be, worst
+  double stretch = 0;                    // change of sides' length, as a fraction of it, mean
+  double volume = 0;                     // enclosed by the surface: 0.1 is a tenth more; 0 where it encloses none
+  std::optional<double> targetDistance;  // metres from pinned joints to their targets, worst
   std::optional<MotionMetrics> motion;   // of the chosen clip, where it is a motion between people
 };
 

@@ -52,7 +52,7 @@ TEST(Measures, ADraggedHandleStretchesAndTargetsTellHowFarTheyAreMissed) {
   perform(session, MoveJoint{last, {0.5, 0, 0}});
   EXPECT_GT(measureSession(session).stretch, 0.01);
   const Vec3 position = poseGlobals(session.state().rig->skeleton(), session.state().pose).back().translation();
-  perform(session, SetTarget{last, position + Vec3(0, 3, 0)});  // not held while inverse kinematics is off
+  perform(session, SetTarget{last, position + Vec3(0, 3, 0)});  // not pinned while inverse kinematics is off
   EXPECT_NEAR(measureSession(session).targetDistance.value(), 3, 1e-9);
 }
 

@@ -15,7 +15,7 @@ struct PickHit {
   bool onHandle = false;  // else on the surface: the joint that holds it most
   Vec3 position = Vec3::Zero();
   double distance = 0;         // along the ray, in metres
-  Vec3 inside = Vec3::Zero();  // of the surface: half way to where the ray leaves it again; of a handle its place
+  Vec3 inside = Vec3::Zero();  // of the surface: midway to where the ray leaves it again; of a handle its position
 };
 
 // The handle that the ray meets first; else, of those that it passes within `slope` times their distance, the one it
@@ -35,7 +35,7 @@ struct SurfaceHit {
   Vec3 inside = Vec3::Zero();   // as of PickHit
 };
 
-// A tree of the surface as it stands, for many rays.
+// A tree of the posed surface, for many rays.
 class SurfacePicker {
  public:
   // `model` must outlive it. Cost: that of posedPositions and O(#F log #F).
@@ -48,7 +48,7 @@ class SurfacePicker {
   Bvh tree_;
 };
 
-// The point of the posed surface that the ray meets first. Cost: O(#F log #F), a tree of the surface as it stands.
+// The point of the posed surface that the ray meets first. Cost: O(#F log #F), a tree of the posed surface.
 std::optional<PickHit> pickSurface(const Ray& ray, const RiggedModel& model, const Pose& pose,
                                    const Deformer& deformer = kLinearBlendDeformer);
 

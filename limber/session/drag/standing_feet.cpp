@@ -6,13 +6,13 @@ namespace limber {
 
 namespace {
 
-constexpr double kStanceWithin = 0.05;  // of the leg's length: a foot this much higher than at rest stands still
+constexpr double kStanceWithin = 0.05;  // of the leg's length: a foot this much higher than at rest is still planted
 
 bool isLimb(const Part& part) {
   return part.kind == PartKind::kLeg || part.kind == PartKind::kArm || part.kind == PartKind::kWing;
 }
 
-// The joint that a leg stands on.
+// The foot of a leg, or the last of its joints.
 Index footOf(const Part& leg) {
   return leg.end.value_or(leg.joints.back());
 }

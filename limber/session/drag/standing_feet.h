@@ -12,12 +12,12 @@ namespace limber {
 // otherwise.
 bool hasLimbs(const Anatomy& anatomy);
 
-// Feet, paws and hooves that are no higher in `pose` than the rest pose has them, held where they are, their soles as
-// they are. World space.
+// Feet, paws and hooves that are no higher in `pose` than in the rest pose, pinned in position and rotation. World
+// space.
 std::vector<PinnedTarget> standingFeet(const RiggedModel& rig, const Pose& pose);
 
-// What of `targets` holds while `dragged` is moved. A foot whose own limb is dragged above it gives way: it rolls over
-// its toes where it has some, else it lets go.
+// The `targets` that stay pinned while `dragged` is moved. A foot whose own limb is dragged above it is released: it
+// rolls over its toes if it has some, else its target is dropped.
 std::vector<PinnedTarget> pinnedDuringDrag(const RiggedModel& rig, const Pose& pose,
                                            const std::vector<PinnedTarget>& targets, Index dragged);
 

@@ -19,12 +19,12 @@ std::vector<double> curveMoments(const Movement& movement, Index joint, double f
 // there are moments.
 std::vector<Vec3> jointPaths(const Movement& movement, const Skeleton& skeleton, std::span<const double> moments);
 
-// How a joint stands, from its rest pose.
+// A joint's pose, relative to its rest pose.
 struct CurvePoint {
   Vec3 turn = Vec3::Zero();    // degrees about the axes of its own frame: a rotation vector
   Vec3 offset = Vec3::Zero();  // metres along the axes of its parent's
 };
-// From one moment to the next the turn goes the short way, so that it does not jump at half a circle. Throws Error
+// From one time to the next the rotation takes the shorter arc, so that it does not jump at half a circle. Throws Error
 // kBadArgument for a joint that is not there.
 std::vector<CurvePoint> jointCurve(const Movement& movement, const Skeleton& skeleton, Index joint,
                                    std::span<const double> moments);
@@ -38,9 +38,9 @@ struct CurveTangent {
 };
 std::vector<CurveTangent> curveTangents(const Movement& movement, const Skeleton& skeleton, Index joint);
 
-// By the short way, at most half a turn.
+// By the shorter arc, at most 180 degrees.
 CurvePoint pointFromRest(const Transform& local, const Transform& rest);
-// The inverse: the joint stands so. Its scale stays.
+// The inverse: sets the joint's pose. Its scale stays.
 void setFromRest(Transform& local, const Transform& rest, const CurvePoint& point);
 
 }  // namespace limber

@@ -30,7 +30,7 @@ Asset documentToEdit(const RiggedModel& model) {
   return asset;
 }
 
-// How joints of `from` stand, for those of `to`: in the same places, new ones at rest.
+// The pose of the joints of `from`, for those of `to`: at the same world positions, new ones at rest.
 Pose carriedPose(const Skeleton& from, const Pose& pose, const Skeleton& to,
                  const std::vector<std::optional<Index>>& before) {
   const std::vector<Affine> stood = poseGlobals(from, pose);

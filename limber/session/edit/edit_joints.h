@@ -16,8 +16,8 @@ struct JointEdit {
   std::vector<std::optional<Index>> before;  // #J of `rig`; none for a joint that is new
 };
 
-// A joint without weights below `parent`, where `position` is in the world as the model stands in `pose`. Throws Error
-// kBadArgument where the name is empty or taken, or the place is none.
+// A joint without weights, a child of `parent`, at the world position `position` while the model is in `pose`. Throws
+// Error kBadArgument where the name is empty or taken, or the position is not finite in the parent's frame.
 JointEdit withJoint(const RiggedModel& model, const Pose& pose, Index parent, const Vec3& position,
                     const std::string& name);
 
@@ -25,11 +25,11 @@ JointEdit withJoint(const RiggedModel& model, const Pose& pose, Index parent, co
 // the nearest joint. Throws Error kBadArgument for the last root.
 JointEdit withoutJoint(const RiggedModel& model, Index joint);
 
-// In the same place, with all that hangs on it. Throws Error kBadArgument for a joint at or below itself.
+// At the same position, with all its descendants. Throws Error kBadArgument for a joint at or below itself.
 JointEdit withJointOn(const RiggedModel& model, Index joint, Index parent);
 
-// Pose, clips, targets, limits and locks for the joints as they are now: all that is still there stands where it stood,
-// in clips at every key.
+// Pose, clips, targets, limits and locks for the joints as they are now: joints that are still there stay where they
+// were, in clips at every key.
 void takeJointEdit(SessionState& state, const JointEdit& edit);
 
 }  // namespace limber

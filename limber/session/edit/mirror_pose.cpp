@@ -31,7 +31,7 @@ Affine reflection(const MirrorPlane& plane) {
   return result;
 }
 
-// Half way between two motions of the same point.
+// Midway between two motions of the same point.
 Affine halfwayTransform(const Affine& a, const Affine& b, const Vec3& pivot) {
   const Transform ta = decompose(a), tb = decompose(b);
   Transform half;

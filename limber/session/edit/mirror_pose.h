@@ -10,7 +10,7 @@
 
 namespace limber {
 
-// #J: the joint that stands, in rest pose, at the mirror image of each joint, to within `tolerance` metres; itself on
+// #J: the joint that is, in rest pose, at the mirror image of each joint, to within `tolerance` metres; itself on
 // the plane, kNoIndex where there is none. Images are mutual.
 std::vector<Index> mirrorJoints(const Skeleton& skeleton, const MirrorPlane& plane, double tolerance);
 

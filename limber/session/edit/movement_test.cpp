@@ -151,7 +151,7 @@ TEST(Movement, AUserSaysWhetherAFootStands) {
   EXPECT_EQ(feet(), found);
   EXPECT_NEAR(slideOf(session, "leftFoot", middle, to), pinnedSlide, 1e-6);
 
-  // Where it swings, it can be held.
+  // Where it swings, it can be set to be planted.
   const double swing = to + 0.15;
   const double swung = slideOf(session, "leftFoot", swing, swing + 0.1);
   act(session, SetContact{"leftFoot", swing - 0.1, swing + 0.1});
@@ -178,7 +178,7 @@ TEST(Movement, ClipsAreJoinedOverlappingAndJoinedAnew) {
   EXPECT_NEAR(sequence["clips"][1]["to"].get<double>(), shown().clip->duration(), 1e-6);
   EXPECT_TRUE(sessionState(session)["clips"][0]["sequence"].is_null());
 
-  // In its place, with what was corrected on top.
+  // Replaced, with the corrections on top.
   act(session, SetTime{0.1});
   act(session, TurnJoint{"head", Vec3::UnitX(), 20});
   act(session, SetKey{0.1});

@@ -18,7 +18,7 @@ constexpr double kBeside = 1e-6;  // that barycentric coordinates may lie outsid
 
 TriMesh weldedMesh(const Geometry& geometry, const std::vector<Index>& weldedVertex) {
   TriMesh mesh;
-  for (std::size_t s = 0; s < weldedVertex.size(); ++s) {  // a place is first met at its lowest vertex
+  for (std::size_t s = 0; s < weldedVertex.size(); ++s) {  // a position first occurs at its lowest vertex
     if (weldedVertex[s] == mesh.positions.size()) mesh.positions.push_back(geometry.positions[s]);
   }
   for (const Triangle& t : geometry.triangles) {

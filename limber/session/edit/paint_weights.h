@@ -14,7 +14,7 @@
 
 namespace limber {
 
-// The surface as a brush runs over it: welded, as bound, in metres. One for all rigs that share a Geometry.
+// The surface as a brush runs over it: welded, as bound, in metres. One for all rigs of the same Geometry.
 class PaintSurface {
  public:
   explicit PaintSurface(std::shared_ptr<const Geometry> geometry);
@@ -22,7 +22,7 @@ class PaintSurface {
   const std::shared_ptr<const Geometry>& geometry() const { return geometry_; }
   const SurfaceDistance& distance() const { return distance_; }
   Index weldedVertex(Index source) const { return weldedVertex_[source]; }
-  // The vertices at the place of a welded one, ascending; never empty.
+  // The vertices at the position of a welded one, ascending; never empty.
   std::span<const Index> sources(Index welded) const;
   // Found when it is asked for first; none where the model is not its own mirror image.
   const std::optional<MirrorMap>& mirror() const;
@@ -35,8 +35,8 @@ class PaintSurface {
   mutable std::optional<MirrorMap> mirror_;
 };
 
-// A stroke as it grows. What comes of it depends on where the brush has been, not on how often or in which order: at
-// each vertex the nearest dab counts, and changes the weights from before the stroke. Vertices at one place (seams) get
+// A stroke as it grows. Its result depends on where the brush has been, not on how often or in which order: at each
+// vertex the nearest dab counts, and changes the weights from before the stroke. Vertices at one position (seams) get
 // equal weights.
 class WeightStroke {
  public:

@@ -135,7 +135,7 @@ TEST(PaintWeights, SeamsGetEqualWeights) {
   }
 }
 
-// Two triangles of grids of their own: a place is that of its lowest vertex.
+// Two triangles of grids of their own: a welded vertex takes the position of its lowest source.
 TEST(PaintSurface, APlaceIsThatOfItsLowestVertex) {
   auto geometry = std::make_shared<Geometry>();
   geometry->positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1.01f, 0, 0}, {1, 1, 0}, {0, 1.01f, 0}};

@@ -18,7 +18,7 @@ std::shared_ptr<const RiggedModel> rigOfOther(const SessionState& state, ByteSpa
 std::shared_ptr<const RiggedModel> rigOfAnimation(const Asset& base, const RigFromAnimation& command,
                                                   Progress& progress);
 
-// The rig's own clips come in, in place of those of the same names; the first of them is chosen where none is.
+// Adds the rig's own clips, replacing those of the same names; the first of them is chosen where none is.
 void takeOwnClips(Movement& movement, const RiggedModel& rig);
 
 }  // namespace limber

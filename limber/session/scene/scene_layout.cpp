@@ -8,7 +8,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kRoom = 0.25;  // between neighbours, as a share of the wider one
+constexpr double kRoom = 0.25;  // between neighbours, as a fraction of the wider one
 
 std::size_t indexOf(std::span<const SceneMember> members, const Session* session) {
   const auto found =
@@ -68,7 +68,7 @@ void carryOver(Attachment& attachment, const RiggedModel& from, const RiggedMode
   const Affine before = restGlobals(from.skeleton())[*known];
   const std::vector<Affine> rest = restGlobals(to.skeleton());
   const auto distance = [&](Index joint) { return (rest[joint].translation() - before.translation()).norm(); };
-  // Among joints that lie in one place the one of the same name.
+  // Among joints at one position, the one of the same name.
   Index nearest = to.skeleton().find(attachment.joint).value_or(0);
   for (Index j = 0; j < rest.size(); ++j) nearest = distance(j) < distance(nearest) ? j : nearest;
   attachment.joint = to.skeleton().joints[nearest].name;

@@ -13,10 +13,10 @@ Affine jointFrame(const SessionState& state, const std::string& joint);
 // The member's own space in that of the scene.
 Affine toScene(std::span<const SceneMember> members, std::size_t member);
 
-// Of the bound surface, in the space that `place` brings it to.
+// Of the bound surface, in the space that `transform` brings it to.
 Box boxOf(const Session& session, const Affine& transform);
 
-// Beside the members that there are, on the ground that the first one stands on.
+// Beside the existing members, on the first one's ground.
 Placement besideOthers(std::span<const SceneMember> members, const Session& added);
 
 // Does the member, or one that carries it, follow a joint of `carrier`?

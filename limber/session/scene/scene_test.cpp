@@ -292,7 +292,7 @@ TEST(SessionScene, ASurfaceInFrontIsPicked) {
   SessionScene scene = twoAndAProp();
   const Box box = boxOf(*scene.members()[1].session, scene.toScene(1));
   run(scene, ChooseMember{"person"});
-  // The first one stands at the origin: its space is the scene's.
+  // The first one is at the origin: its space is the scene's.
   const std::optional<SceneHit> hit = scene.pick({box.center() + Vec3(0, 0, 10), {0, 0, -1}});
   ASSERT_TRUE(hit);
   EXPECT_EQ(hit->member, 1u);

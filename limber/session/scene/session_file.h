@@ -1,5 +1,5 @@
-// A session kept in its model: the file is an ordinary GLB of the model as it was opened, and what was done with it
-// stands in its extras.
+// A session kept in its model: the file is an ordinary GLB of the model as it was opened, and its extras have the
+// commands performed on it.
 #pragma once
 
 #include <optional>

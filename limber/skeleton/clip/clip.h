@@ -8,8 +8,8 @@
 
 namespace limber {
 
-// glTF's three. Linear rotations turn at even speed the short way round (slerp). Cubic: Hermite splines, three values
-// for each key: in-tangent, value, out-tangent, tangents per second.
+// glTF's three. Linear rotations turn at constant speed along the shortest path (slerp). Cubic: Hermite splines, three
+// values for each key: in-tangent, value, out-tangent, tangents per second.
 enum class Interpolation { kStep, kLinear, kCubic };
 
 // times   #K seconds, strictly increasing, at least one key; before the first and after the last the value stays

@@ -26,7 +26,7 @@ Eigen::Quaternionf stored(const Quat& value) {
   return value.cast<float>();
 }
 
-// q and -q are one rotation, but not the same way there.
+// q and -q are one rotation, but the paths of interpolation to them differ.
 void keepNearSide(std::vector<Vec3f>&) {}
 void keepNearSide(std::vector<Eigen::Quaternionf>& values) {
   for (std::size_t k = 1; k < values.size(); ++k) {
@@ -61,7 +61,7 @@ std::vector<float> frameTimes(double duration, double rate, Index frames) {
   return times;
 }
 
-// A value that stands still does so from the start.
+// A constant value is constant from the start.
 template <typename Value>
 Track<Value> fromStart(Track<Value> track) {
   track.times = {0};

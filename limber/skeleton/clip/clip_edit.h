@@ -15,14 +15,15 @@ Clip resampleClip(const Clip& clip, double framesPerSecond);
 // unless from < to and something of the clip lies between.
 Clip trimClip(const Clip& clip, double from, double to);
 
-// The same of one track, between any two moments, 0 <= from < to: outside its keys it stands still.
+// The same of one track, between any two times, 0 <= from < to: outside its keys it is constant.
 Track<Vec3f> trimTrack(const Track<Vec3f>& track, double from, double to);
 Track<Eigen::Quaternionf> trimTrack(const Track<Eigen::Quaternionf>& track, double from, double to);
 
 // The whole movement turned about the origin: its roots, also those without a track. No turn changes nothing.
 Clip turnClip(Clip clip, const Skeleton& skeleton, const Quat& turn);
 
-// A pose between two: translations and scales linearly, rotations the short way. weight 0 is a, 1 is b. Equal sizes.
+// A pose between two: translations and scales linearly, rotations along the shortest path. weight 0 is a, 1 is b.
+// Equal sizes.
 Pose blendPoses(const Pose& a, const Pose& b, double weight);
 
 // A mix of two clips over one skeleton: `weight` 0 is a, 1 is b. The result lasts the mix of their durations, and both
@@ -48,8 +49,8 @@ struct LoopOptions {
 };
 
 // The loop with the least error per second of its length, comparing joints relative to the body (its height counts, its
-// place and heading do not) at this and the next frame, so that speeds match too; nullopt where none is good enough or
-// nothing moves. Cost: O(frames^2 * joints).
+// position and heading do not) at this and the next frame, so that speeds match too; nullopt where none is good enough
+// or nothing moves. Cost: O(frames^2 * joints).
 std::optional<ClipLoop> findLoop(const Skeleton& skeleton, const Clip& clip, const LoopOptions& options = {});
 
 }  // namespace limber

@@ -184,7 +184,7 @@ TEST(ClipEdit, BlendingGoesFromOneToTheOther) {
   for (int k = 0; k <= 10; ++k) {
     EXPECT_LT(difference(skeleton, a, 0.1 * k, onlyA, 0.1 * k), 1e-4);
     EXPECT_LT(difference(skeleton, b, 0.2 * k, onlyB, 0.2 * k), 1e-4);
-    // Half way between two rotations both are equally far.
+    // Halfway between two rotations both are equally far.
     Pose x = restPose(skeleton), y = restPose(skeleton), z = restPose(skeleton);
     sampleClip(a, 0.1 * k, x);
     sampleClip(b, 0.2 * k, y);

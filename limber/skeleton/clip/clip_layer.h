@@ -36,10 +36,10 @@ struct ClipLayer {
 inline constexpr double kLayerRate = 30;
 Clip applyLayer(const Clip& clip, const ClipLayer& layer, const Skeleton& skeleton);
 
-// The pose becomes the one that is shown at that moment: a key for each joint that stands otherwise than `shown`. Where
-// none does, each joint of the layer gets a key that keeps it there. `base` and `shown` are the clip's pose then,
-// without and with the layer. Throws Error kBadArgument where the poses differ in size, or seconds or span are negative
-// or no number.
+// The pose becomes the one that is shown at that time: a key for each joint whose pose differs from `shown`. Where none
+// differs, each joint of the layer gets a key that keeps it there. `base` and `shown` are the clip's pose then, without
+// and with the layer. Throws Error kBadArgument where the poses differ in size, or seconds or span are negative or not
+// a number.
 void setKey(ClipLayer& layer, const Pose& base, const Pose& shown, const Pose& pose, double seconds, double span);
 
 // As those of keyframes.h.

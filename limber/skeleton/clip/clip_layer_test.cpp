@@ -144,7 +144,7 @@ TEST(ClipLayer, OnlyWhatWasCorrectedGetsAKey) {
   ASSERT_EQ(result.translations.size(), 1u) << "the hand gets a track, at rest where nothing was corrected";
   EXPECT_NEAR(poseOf(result, 0.5).locals[2].translation.y(), 0.1, 1e-6);
   EXPECT_NEAR(poseOf(result, 1).locals[2].translation.y(), 0, 1e-6);
-  // The same pose again: every joint of the layer is held there.
+  // The same pose again: every joint of the layer gets a key that keeps it there.
   base = poseOf(clip, 1.2);
   shown = poseOf(result, 1.2);
   setKey(layer, base, shown, shown, 1.2, 0.2);

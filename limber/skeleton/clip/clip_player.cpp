@@ -51,7 +51,7 @@ struct ClipPlayer::Packed {
   };
 
   // Four joints at all of their keys together, ready to be read: nothing is left to do where a key is passed. Kept for
-  // joints whose tracks are linear and share most of their times, as those of recorded motion do.
+  // joints whose tracks are linear and have most of their times in common, as those of recorded motion do.
   struct GroupKeys {
     std::vector<float> times, perSpan;  // #K seconds; #K - 1 inverses of the spans
     std::vector<Locals> values;         // #K; each rotation on the half sphere of the one before
@@ -233,8 +233,9 @@ ClipPlayer::Packed::Locals ClipPlayer::Packed::packedLocals(std::size_t group, d
   const Locals &a = k.values[k.at], &b = k.values[k.at + 1];
   const float u = std::clamp(static_cast<float>(seconds - k.times[k.at]) * k.perSpan[k.at], 0.0f, 1.0f);
   Locals locals;
-  // Even turning, u of the way: sin(u w) / (sin(u w) + sin(w - u w)) of the chord to the next rotation, w the angle
-  // between the two in four dimensions; to the third order in w, with w^2 = 2 (1 - cos w) + (1 - cos w)^2 / 3.
+  // Rotation at constant speed, to the fraction u: sin(u w) / (sin(u w) + sin(w - u w)) of the chord to the next
+  // rotation, w the angle between the two in four dimensions; to the third order in w, with
+  // w^2 = 2 (1 - cos w) + (1 - cos w)^2 / 3.
   Float4 off = {1, 1, 1, 1};
   for (int c = 0; c < 4; ++c) off -= a.rotation[c] * b.rotation[c];
   const Float4 bend = (2.0f / 3 + off / 9.0f) * off;

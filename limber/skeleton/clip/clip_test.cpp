@@ -89,7 +89,7 @@ TEST(Clip, CubicsReproduceACubicPolynomial) {
 TEST(Clip, RotationsTurnEvenlyTheShortWay) {
   Clip clip;
   Eigen::Quaternionf end = aboutZ(90);
-  end.coeffs() *= -1;  // the same rotation, said the long way round
+  end.coeffs() *= -1;  // the same rotation, as the quaternion on the longer path
   clip.rotations.push_back({1, Interpolation::kLinear, {0, 1}, {aboutZ(0), end}});
   Pose pose = restPose(twoJoints());
   sampleClip(clip, 0.25, pose);

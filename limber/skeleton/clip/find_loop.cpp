@@ -25,7 +25,7 @@ std::vector<Index> travellers(const Skeleton& skeleton, Index body) {
   return joints;
 }
 
-// Positions of joints with the body's place on the ground and its heading (turn about +Y) taken out.
+// Positions of joints with the body's position on the ground and its heading (rotation about +Y) taken out.
 std::vector<Vec3> standingPoints(const Skeleton& skeleton, const Clip& clip, std::span<const Index> joints, Index body,
                                  const Quat& rest, double seconds) {
   Pose pose = restPose(skeleton);

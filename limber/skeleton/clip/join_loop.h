@@ -10,7 +10,7 @@ inline constexpr double kClosedLoop = 1e-4;  // of the skeleton's size, or of a 
 struct JoinedLoop {
   Clip clip;
   double gap = 0;            // how far the ends were apart: the farthest joint, in the skeleton's unit, travel aside
-  double largestChange = 0;  // of a joint's place at any key
+  double largestChange = 0;  // of a joint's position at any key
 };
 
 // The clip with its last key in the pose of its first: bit for bit, but for the roots, which end where the body has

@@ -73,7 +73,7 @@ TEST(JoinLoop, EndsAsItBegins) {
     const Track<Eigen::Quaternionf>& bends = joined.clip.rotations[1];
     ASSERT_EQ(bends.joint, 1u);
     EXPECT_EQ(bends.values.front().coeffs(), bends.values.back().coeffs());
-    // The whole body: the turn and the way over the ground take it there, its height is the same.
+    // The whole body: the rotation and the displacement over the ground take it there, its height is the same.
     const Affine turned(Eigen::AngleAxisd(turn, Vec3::UnitY()));
     const auto begin = at(skeleton, joined.clip, 0), end = at(skeleton, joined.clip, kSeconds);
     for (std::size_t j = 1; j < begin.size(); ++j) {

@@ -8,8 +8,8 @@
 namespace limber {
 
 // Where constant tracks were cut to one key so that nothing of a clip lasts until the last of these times (increasing,
-// seconds), its first track gets keys at all of them: a held pose keeps its length and its frames. A clip without a
-// track stays so.
+// seconds), its first track gets keys at all of them: a still pose keeps its length and its frames. A clip without a
+// track remains without one.
 void keepDuration(Clip& clip, const std::vector<float>& times);
 
 }  // namespace limber

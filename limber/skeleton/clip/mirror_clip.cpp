@@ -15,8 +15,8 @@ Clip mirrorClip(const Clip& clip, const Skeleton& skeleton, const SkeletonMirror
   const auto reflect = [&](const Vec3& v) { return Vec3(v - 2 * n.dot(v) * n); };
   Clip result;
   result.name = clip.name;
-  // A rotation seen from the rest pose, in the skeleton's axes: its axis is mirrored and its sense turned round. All
-  // steps are linear in the quaternion, so tangents go the same way.
+  // A rotation seen from the rest pose, in the skeleton's axes: its axis is mirrored and its sense reversed. All steps
+  // are linear in the quaternion, so tangents are mirrored likewise.
   for (const auto& track : clip.rotations) {
     const Index to = mirror.partner[track.joint];
     const Quat left = above(track.joint), right = rest[track.joint].inverse();

@@ -11,8 +11,8 @@ struct SkeletonMirror {
   Vec3 normal = Vec3::UnitX();  // of the plane between the sides, in the skeleton's space
 };
 
-// The clip as it looks in a mirror in that plane through the roots' rest places: what the left hand did the right one
-// does. Keys and interpolation stay. Exact where the rest pose is symmetric; else each joint turns from its own rest
+// The clip as it looks in a mirror in that plane through the roots' rest positions: the right hand does what the left
+// one did. Keys and interpolation stay. Exact where the rest pose is symmetric; else each joint turns from its own rest
 // pose as its partner did, mirrored. Scales go to the partner as they are. The clip has passed checkClip.
 Clip mirrorClip(const Clip& clip, const Skeleton& skeleton, const SkeletonMirror& mirror);
 

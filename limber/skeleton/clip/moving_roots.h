@@ -10,7 +10,7 @@ namespace limber {
 // A joint that moves, while none above it does. What moves a whole body moves its locals.
 struct MovingRoot {
   Index joint = 0;
-  Affine above = Affine::Identity();  // the globals of what it hangs on, which stands still
+  Affine above = Affine::Identity();  // the globals of its parent, which does not move
 };
 
 // Parents first; none where nothing moves. Tracks that hold one value, whatever the number of their keys, are no

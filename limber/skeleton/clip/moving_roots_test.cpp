@@ -16,7 +16,7 @@ TEST(MovingRoots, AreTheTopmostJointsThatMove) {
   }
   const Vec3f position(0, 2, 0);
   Clip clip;
-  clip.translations.push_back({0, Interpolation::kLinear, {0, 1}, {position, position}});  // baked, and held
+  clip.translations.push_back({0, Interpolation::kLinear, {0, 1}, {position, position}});  // baked, and constant
   clip.translations.push_back({1, Interpolation::kLinear, {0, 1}, {position, Vec3f(0, 2, 1)}});
   clip.translations.push_back({2, Interpolation::kLinear, {0, 1}, {position, Vec3f(0, 2, 1)}});
   clip.translations.push_back({3, Interpolation::kLinear, {0}, {position}});

@@ -54,7 +54,7 @@ class JointMovement {
   const Track<Vec3f>* scale_;
 };
 
-// The joints that carry the body's way: those that move, or the roots where it is held in its place.
+// The joints that carry the body's trajectory: those that move, or the roots where the body does not move.
 std::vector<MovingRoot> carriersOf(const Skeleton& skeleton, const Clip& clip, Index body) {
   std::vector<MovingRoot> carriers = movingRoots(skeleton, clip);
   const auto carriesBody = [&](const MovingRoot& root) { return isAncestorOrSelf(skeleton, root.joint, body); };

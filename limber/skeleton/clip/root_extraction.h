@@ -8,9 +8,9 @@ namespace limber {
 // Both take the trajectory of this very clip. The clip has passed checkClip for the skeleton. Joints that change get
 // linear tracks; all others keep theirs.
 
-// The clip without that travel: the body stays above where it has its rest pose. Feet then slide over the ground, by
-// design. It is taken out of the topmost joints that move (movingRoots), and what stands still has no part in it; where
-// none of them carries the body, which is held then, out of the roots.
+// The clip without that travel: the body stays above its rest position. Feet then slide over the ground, by design. The
+// travel is taken out of the topmost joints that move (movingRoots), and joints that do not move are not involved;
+// where none of them carries the body, which then does not move, out of the roots.
 //
 // body  the joint that the trajectory was made of
 Clip clipInPlace(const Skeleton& skeleton, const Clip& clip, Index body, const RootTrajectory& trajectory);

@@ -91,7 +91,7 @@ std::vector<float> trajectoryTimes(const Clip& clip, const BodyPath& path) {
   return times;
 }
 
-// Evenly sampled places, and what lies beyond their ends.
+// Evenly sampled positions, and those beyond their ends.
 class SampledPath {
  public:
   SampledPath(BodyPath& path, double duration, bool loops) : loops_(loops) {

@@ -27,9 +27,9 @@ struct RootTrajectory {
 
 // With keys wherever the body's joint or one above it has one, and at least as many a second as the clip's frame rate
 // and 30. A Gaussian of 0.3 s leaves a sixth of a sway of one a second in the trajectory, and all of a walk's progress.
-// Over the ends of a clip it sees the movement turned about the end's own place, so that even speed stays even; with
-// `loops` the clip itself, one stride on. Heading is the twist about +Y of the joint's rotation since rest pose; where
-// that is not defined (upside down) it stays as it was.
+// Beyond the ends of a clip it sees the movement turned about the end's own position, so that a constant speed stays
+// constant; with `loops` the clip itself, one stride on. Heading is the twist about +Y of the joint's rotation since
+// rest pose; where that is not defined (upside down) it stays as it was.
 //
 // +Y is up. The clip has passed checkClip for the skeleton; throws Error kBadArgument where `body` is no joint of it or
 // the smoothing is negative or not finite. Cost: O(duration * smoothing) samples beside sampling the clip 60 times a

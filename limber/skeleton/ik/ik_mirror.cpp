@@ -141,7 +141,7 @@ bool IkMirror::fits(const IkSystem& system) {
   }
   for (int n = 0; n < system.nodeCount(); ++n) {
     if (!isImage(system, n)) return false;
-    // A base's limit stands in the world, where the plane has gone from.
+    // A base's limit is fixed in the world, from which the plane has moved away.
     if (moved && system.nodes[at(n)].parent < 0 && system.nodes[at(n)].limit) return false;
   }
   return referencesMatch(system);

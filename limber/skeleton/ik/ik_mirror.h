@@ -19,7 +19,7 @@ class IkSystem;
 class IkMirror {
  public:
   IkMirror() = default;
-  // Looks for the images as the system stands (in rest pose): effectors that lie opposite each other tell the plane.
+  // Looks for the images in the system's current state (rest pose): effectors opposite each other define the plane.
   explicit IkMirror(const IkSystem& system);
 
   // Whether pose, targets and references are symmetric too. To be asked after each load, before impose().

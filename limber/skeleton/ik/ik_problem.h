@@ -29,9 +29,9 @@ enum class RootMotion {
 
 struct IkOptions {
   Index maxIterations = 200;     // of one attempt
-  double tolerance = 1e-4;       // reached: nearer than this share of the length from base to effector
+  double tolerance = 1e-4;       // reached: nearer than this fraction of the length from base to effector
   double angleTolerance = 1e-3;  // reached: orientation nearer than this, radians
-  double angleWeight = 0.25;     // a radian off counts as much as this share of the length from base to effector
+  double angleWeight = 0.25;     // a radian of error counts as this fraction of the length from base to effector
   RootMotion rootMotion = RootMotion::kTurn;
 
   // Further attempts, from start poses ever nearer to the best one found, where the first is trapped; the first of them
@@ -41,7 +41,7 @@ struct IkOptions {
   std::uint64_t seed = 1;
 
   // Jacobian methods: of all poses that serve the targets, one near `reference` (none: the rest pose), approached by
-  // this share in each iteration (Choi, Ko: Online motion retargetting, 1999). 0: off.
+  // this fraction in each iteration (Choi, Ko: Online motion retargetting, 1999). 0: off.
   double referenceGain = 0;
   std::optional<Pose> reference;
 };
@@ -49,7 +49,7 @@ struct IkOptions {
 enum class IkOutcome {
   kReached,
   kOutOfReach,  // further from the base than the bones are long, or too near for a long bone to fold: no pose reaches
-  kStuck,       // not reached: targets against each other, limits in the way, or iterations used up
+  kStuck,       // not reached: conflicting targets, blocking limits, or iterations used up
 };
 
 struct IkTargetResult {

@@ -1,4 +1,4 @@
-// Skeletons to try solvers on: tests, benchmarks and the evaluation share them.
+// Skeletons to try solvers on, for tests, benchmarks and the evaluation.
 #pragma once
 
 #include <vector>

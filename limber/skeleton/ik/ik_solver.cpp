@@ -50,7 +50,7 @@ constexpr IkMethod kMethods[] = {
      &makeWholeBody},
 };
 
-constexpr double kNudge = 0.1;  // of the way to a random rotation
+constexpr double kNudge = 0.1;  // fraction of the rotation to a random one
 constexpr double kSmallestJump = 0.2;
 constexpr double kWorthwhile = 1e-12;
 constexpr double kWorthGoingOn = 0.5;  // of the cost before, after all iterations of an attempt
@@ -91,7 +91,7 @@ const IkResult& IkSolver::solve(Pose& pose, std::span<const IkTarget> targets) {
   return result_;
 }
 
-// Runs the method from where the system stands, and leaves the best state so far in the system.
+// Runs the method from the system's state, and leaves the best state so far in the system.
 void IkSolver::attempt(double& best) {
   const Index iterations = iteration_->run(system_, system_.options().maxIterations);
   if (system_.symmetric()) system_.forward();

@@ -36,8 +36,8 @@ const IkMethod& findIkMethod(std::string_view name);
 // taking memory. The start pose is the warm start. Same calls, same answers, bit for bit.
 //
 // The answer keeps every bone's length, breaks no limit and is never worse than the start pose bent into its limits, by
-// IkSystem::cost(). Joints that lie on no way from a base to an effector stay as they are. Where skeleton, limits,
-// start pose and targets are the same left and right, so is the answer, even if a pose that differs would come nearer.
+// IkSystem::cost(). Joints on no path from a base to an effector stay as they are. Where skeleton, limits, start pose
+// and targets are the same left and right, so is the answer, even if a pose that differs would come nearer.
 class IkSolver {
  public:
   // Skeleton and limits (none: null) must outlive the solver. Errors as of IkSystem; some methods refuse what they
@@ -45,7 +45,7 @@ class IkSolver {
   IkSolver(const IkMethod& method, const Skeleton& skeleton, std::span<const IkTarget> targets,
            const JointLimits* limits = nullptr, const IkOptions& options = {});
 
-  // The pose to stay near from now on, in place of IkOptions::reference; of that skeleton.
+  // The pose to stay near from now on, instead of IkOptions::reference; of that skeleton.
   void setReference(const Pose& reference) { system_.setReference(reference); }
 
   // `pose` is the start and becomes the answer. Errors as of IkSystem::load. The result lives until the next call.
@@ -65,7 +65,7 @@ class IkSolver {
   bool stillGaining_ = false;  // when the last attempt's iterations were used up
 };
 
-// Turns every node that moves by the share `jump` of the way to a random rotation that its limits allow.
+// Turns every node that moves by the fraction `jump` towards a random rotation that its limits allow.
 void perturbNodes(IkSystem& system, Random& random, double jump);
 
 // The same as an IkSolver's for a single solve.

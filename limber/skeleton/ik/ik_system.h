@@ -12,7 +12,7 @@ namespace limber {
 
 class IkTaskRows;
 
-// The joints on the ways from bases to effectors ("nodes", parents first), where they stand, and what the targets want.
+// The joints on the paths from bases to effectors ("nodes", parents first), their state, and what the targets require.
 // Memory is taken in the constructor only. Bones keep their length: a method changes `locals`, and `offsets` only of
 // nodes that slide; forward() derives the rest.
 class IkSystem {
@@ -44,14 +44,14 @@ class IkSystem {
   // above the joint, weight not positive, numbers not finite, limits not one for each joint.
   IkSystem(const Skeleton& skeleton, std::span<const IkTarget> targets, const JointLimits* limits,
            const IkOptions& options);
-  // The same for tasks, which must outlive the system, in place of targets: for Jacobian methods only.
+  // The same for tasks, which must outlive the system, instead of targets: for Jacobian methods only.
   IkSystem(const Skeleton& skeleton, IkTaskRows& tasks, const JointLimits* limits, const IkOptions& options);
 
   // Takes over a pose and where the targets are now, bends the pose into the limits and derives all state. Throws Error
   // kBadArgument where the targets differ from those of the constructor in more than position, orientation, weight and
   // pole, and kUnsupported where a joint above a moving one has a scale that is not uniform.
   void load(const Pose& pose, std::span<const IkTarget> targets);
-  // The pose that `references` tell, in place of the one in the options. Before load().
+  // Uses this pose instead of the reference in the options. Before load().
   void setReference(const Pose& reference);
   // Writes the nodes' rotations, and translations of those that slide, into `pose`.
   void store(Pose& pose) const;

@@ -16,7 +16,7 @@ namespace {
 constexpr std::array<std::string_view, std::variant_size_v<IkTaskGoal>> kTaskNames = {
     "position", "orientation", "look-at", "distance", "plane", "balance", "keep-out", "coupling"};
 
-constexpr double kNearby = 0.1;         // of the way to a random rotation, for another attempt
+constexpr double kNearby = 0.1;         // fraction of the rotation to a random one, for another attempt
 constexpr double kClearlyBetter = 0.9;  // of the cost: what another posture is taken for
 
 class TaskCheck {

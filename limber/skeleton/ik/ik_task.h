@@ -74,7 +74,7 @@ struct PointMass {
 };
 
 struct IkTaskOptions {
-  IkOptions ik;                   // tolerance: as a share of the longest way from the root to a joint that takes part
+  IkOptions ik;                   // tolerance: a fraction of the longest path from the root to a joint that takes part
   std::vector<PointMass> masses;  // none: each bone is a rod as heavy as it is long
 };
 
@@ -109,14 +109,14 @@ inline constexpr std::size_t kMaxSupports = 100;
 // ones as well served as they were (to the tolerance), by the damped steps in null spaces of the whole-body solver;
 // after iTaSC (De Schutter and others 2007) and Baerlocher, Boulic 2004. An inequality takes part where it is violated
 // or a step would violate it (an active set). Limits (none: null) and the lengths of bones are kept. The same calls
-// give the same bits. Where something is not met, further attempts start from poses nearby (IkOptions::restarts), and
-// what is in the way is looked for by solving that task alone.
+// give the same bits. Where a task is not met, further attempts start from poses nearby (IkOptions::restarts), and
+// solving that task alone shows what prevents it.
 //
-// Throws Error kBadArgument for more than kMostIkTasks, and, with "task 2" as the place, for joints that are not there,
-// numbers that are not finite, weights and radii that are not positive, axes and normals that are not unit vectors;
-// otherwise as IkSystem. Joints that are at or above none of a task stay as they are; balance is every joint's task. On
-// 60 joints 0.4 ms for a reach, a look and two feet, 3 ms with balance and three more; what cannot be met takes some
-// ten times as long, by restarts.
+// Throws Error kBadArgument for more than kMaxIkTasks, and, with "task 2" as the location, for joints that are not
+// there, numbers that are not finite, weights and radii that are not positive, axes and normals that are not unit
+// vectors; otherwise as IkSystem. Joints that are at or above none of a task stay as they are; balance is every joint's
+// task. On 60 joints 0.4 ms for a reach, a look and two feet, 3 ms with balance and three more; what cannot be met
+// takes some ten times as long, by restarts.
 IkTaskResult solveIkTasks(const Skeleton& skeleton, Pose& pose, std::span<const IkTask> tasks,
                           const JointLimits* limits = nullptr, const IkTaskOptions& options = {});
 

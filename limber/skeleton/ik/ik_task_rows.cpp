@@ -15,7 +15,7 @@ namespace limber {
 namespace {
 
 constexpr double kActivated = 1e-12;  // of the body's size: what a step must violate an inequality by
-constexpr double kOpposite = 1e-6;    // of a look the other way, where no turn is better than another
+constexpr double kOpposite = 1e-6;    // of a look in the opposite direction, where no rotation is better than another
 
 // Along Y.
 Eigen::Vector2d flat(const Vec3& point) {

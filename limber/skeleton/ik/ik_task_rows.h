@@ -45,8 +45,8 @@ class IkTaskRows {
   std::size_t servedLevels() const { return served_; }
   std::span<const Eigen::Index> levelBegin() const { return levelBegin_; }
   double size() const { return size_; }
-  // After measure(): the row's share of a turn about, or slide along, a global axis, at a node (minus the error's
-  // derivative), times the root of its weight.
+  // After measure(): the row's coefficient of a rotation about, or slide along, a global axis, at a node (minus the
+  // error's derivative), times the root of its weight.
   double slope(const IkSystem& system, Eigen::Index row, int node, const Vec3& axis, bool slides) const;
   bool active(Eigen::Index row) const { return rows_[static_cast<std::size_t>(row)].active; }
   // The error where the slopes were measured, times the root of the weight; 0 for rows that are not active.

@@ -327,7 +327,7 @@ TEST_F(IkTaskTest, WhatCannotBeMetIsSaid) {
   EXPECT_EQ(result.tasks[1].obstacle, IkTaskObstacle::kOtherTasks);
   const double apart = (Vec3(0.4, 1.2, 0.3) - Vec3(0.3, 1.4, 0.2)).norm();
   EXPECT_NEAR(result.tasks[0].residual + result.tasks[1].residual, apart, 1e-3);
-  // A head that looks behind it, its hips held: the neck does not turn so far.
+  // A head that looks behind it, its hips pinned: the neck does not turn so far.
   JointLimits limits;
   limits.joints.resize(humanoid.jointCount());
   for (JointLimit& limit : limits.joints) limit.motion = Hinge{{-0.1, 0.1}};

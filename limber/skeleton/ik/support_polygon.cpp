@@ -12,13 +12,13 @@ using Corners = std::span<const Eigen::Vector2d>;
 
 constexpr double kFlat = 1e-9;  // of its length: the height of a corner over an edge that counts as none
 
-// Does the way from a over b to c turn left?
+// Does the path from a over b to c turn left?
 bool turnsLeft(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c) {
   const Eigen::Vector2d whole = c - a, part = b - a;
   return part.x() * whole.y() - part.y() * whole.x() > kFlat * whole.squaredNorm();
 }
 
-// The hull's corners, counter-clockwise; two where all lie on a line, one where all are at one place.
+// The hull's corners, counter-clockwise; two where all lie on a line, one where all are at one position.
 std::vector<std::size_t> hullOf(Corners corners) {
   std::vector<std::size_t> order(corners.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

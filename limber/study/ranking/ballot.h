@@ -26,7 +26,7 @@ struct Vote {
 // empty lines are skipped. Throws Error kBadData with the line, counted from 1, where the text is none such.
 std::vector<Vote> parseVotes(std::string_view text);
 
-// A voter has one vote on each two results, whichever is called first: the last one counts, at the place of the first.
+// A voter has one vote on each pair of results, in either order: the last one counts, at the index of the first.
 // So a file that was saved twice, with more votes the second time, counts once.
 std::vector<Vote> lastVotes(std::span<const Vote> votes);
 

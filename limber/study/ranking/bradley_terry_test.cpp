@@ -60,7 +60,7 @@ TEST(BradleyTerry, TwoPlayersOfFewGamesAreDrawnToTheMiddle) {
 TEST(BradleyTerry, ThreePlayersAreTheMostLikely) {
   for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
     const std::vector<PairScore> scores = tournament(3, seed);
-    // A grid that closes in on its best place; the logarithm of the posterior is concave.
+    // A grid that closes in on its best point; the logarithm of the posterior is concave.
     std::vector<double> best = {0, 0, 0};
     for (double step = 1; step > 1e-7; step *= 0.5) {
       for (bool isBetter = true; isBetter;) {

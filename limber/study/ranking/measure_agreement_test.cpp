@@ -86,7 +86,7 @@ TEST(MeasureAgreement, KnowsWhichSideIsBetter) {
   EXPECT_NEAR(measureAgreement(cells).at(0).correlation, 1, 1e-12);
 }
 
-// Only the first deformer of a rig is compared with the artist's; the others' figures do not take its place.
+// Only the first deformer of a rig is compared with the artist's; the others' figures do not replace it.
 TEST(MeasureAgreement, FurtherDeformersDoNotMix) {
   Json cells = study("m", "stretch", {1, 2, 3}, "weight_l1", {0.1, 0.2, 0.3});
   for (Json& row : cells["cells"]) row["deformer"] = "linear-blend";

@@ -23,7 +23,7 @@ void addValue(StudyResult& study, const std::string& group, const std::string& r
   study.results.emplace_back().measures = {{&findMeasure(measure), value}};
 }
 
-// The group's rankings are those of rankMethods, in places that are the same in each group.
+// The group's rankings are those of rankMethods, at indices that are the same in each group.
 TEST(StudyRankings, AreOverAllAndInEachFolder) {
   StudyResult study;
   addValue(study, "people", "template", "joint_to_joint", 3);

@@ -143,7 +143,7 @@ MethodPair pairOfVotes(const Games& games, std::size_t pair, bool isTurned) {
   return result;
 }
 
-// In the order of the ranking: place of each method, by number.
+// In the order of the ranking. `indices`: the index in the ranking of each method, by number.
 std::vector<MethodPair> pairsOf(const Games& games, std::span<const std::size_t> indices) {
   std::vector<std::tuple<std::size_t, std::size_t, MethodPair>> found;
   for (std::size_t i = 0; i < games.pairs.size(); ++i) {

@@ -14,8 +14,8 @@ namespace limber {
 
 struct VoteScore {
   std::string method;
-  std::size_t votes = 0;  // that it stood in
-  double chosen = 0;      // share of these, 0 to 1; "alike" is half a vote for each
+  std::size_t votes = 0;  // that it was part of
+  double chosen = 0;      // fraction of these, 0 to 1; "alike" is half a vote for each
   // The chance, 0 to 1, that it is chosen beside a method of middling strength (bradleyTerryStrengths: s / (s + 1));
   // the mean over all methods is 1/2. Low and high: 95 % of 2000 samples of the votes, drawn with replacement
   // (percentile bootstrap, seed 1).
@@ -31,7 +31,7 @@ struct VoteRanking {
   std::vector<MethodPair> pairs;
 };
 
-// Of each kind that has votes; each counts as it stands. Does not depend on their order. Throws Error
+// Of each kind that has votes; each vote counts as given. Does not depend on their order. Throws Error
 // kLimit above 1000 methods.
 std::vector<VoteRanking> rankByVotes(std::span<const Vote> votes);
 

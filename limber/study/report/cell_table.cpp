@@ -41,7 +41,7 @@ void forEachRow(const StudyResult& study,
   }
 }
 
-// A spreadsheet takes what begins like a formula for one, unless an apostrophe stands before it.
+// A spreadsheet takes what begins like a formula for one, unless it is prefixed with an apostrophe.
 std::string quoted(const std::string& field) {
   const bool isFormula = !field.empty() && std::string_view("=+-@\t\r").find(field.front()) != std::string_view::npos;
   const std::string text = isFormula ? "'" + field : field;

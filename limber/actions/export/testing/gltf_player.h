@@ -153,8 +153,8 @@ class GltfPlayer {
   const gltf::Document& document_;
 };
 
-// The largest distance between vertices of two documents at the keys of all clips, and half way between, as a part of
-// their size. At most `most` moments of each clip.
+// The largest distance between vertices of two documents at the keys of all clips, and midway between keys, as a
+// fraction of their size. At most `most` times of each clip.
 inline double largestMove(const Asset& before, const Asset& after, std::size_t step = 1, std::size_t most = 1000000) {
   const GltfPlayer a(before), b(after);
   Box box;

@@ -18,7 +18,7 @@ class HumanoidReader {
 
   std::vector<HumanoidJoint> read() {
     for (const HumanoidJoint& declared : declaredJoints(skeleton_)) give(declared.bone, declared.joint, 1);
-    // Where a joint on the ground carries legs and spine, the hips are the one on the way up that is called so.
+    // Where a joint on the ground carries legs and spine, the hips are the one on the path up that has their name.
     std::vector<Index> trunk = body_.trunk;
     const auto isHips = [&](Index joint) {
       return body_.anatomy.declaredHips == joint || saysHips(readNameOf(skeleton_.joints[joint]));

@@ -9,11 +9,11 @@
 namespace limber {
 
 // Each bone and each joint at most once, in the order of humanoidBones(). Bones that the file declares
-// (Joint::declaredBone) are as it says, where a body can have them (believedSkeleton), and a spine of which it
-// declares any joint has no others; the rest as the body is read (readAnatomy). The hips are where legs and spine
-// part, or above there what is called so; of the joints from there to the neck the first is the spine, the one half
-// way the chest and the last the upper chest. Legs of bodies with more than two are no people's, nor are wings arms.
-// Bodies without any of it get none. Errors and cost of readAnatomy.
+// (Joint::declaredBone) are as it says, where a body can have them (believedSkeleton), and a spine of which it declares
+// any joint has no others; the rest are as readAnatomy infers them. The hips are where legs and spine part, or a joint
+// above that is named so; of the joints from there to the neck the first is the spine, the one halfway the chest and
+// the last the upper chest. Bodies with more than two legs have no human legs, and wings are no arms. Bodies without
+// any of it get none. Errors and cost of readAnatomy.
 std::vector<HumanoidJoint> humanoidJoints(const SkeletonReading& skeleton);
 
 }  // namespace limber

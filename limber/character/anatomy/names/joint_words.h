@@ -14,7 +14,7 @@
 
 namespace limber {
 
-// Words with one meaning share a number; 0 is no word that is known. kJointWords numbers in all.
+// Words with one meaning have the same number; 0 is an unknown word. There are kJointWords numbers.
 inline constexpr std::size_t kJointWords = 45;
 
 enum class NameMark { kFront, kHind, kEnd, kHelper, kTwist, kNumbered };
@@ -33,7 +33,7 @@ JointWords readJointWords(std::string_view name);
 // By which a joint is read: the bone that its file declares it to be, else its name.
 std::string_view readNameOf(const Joint& joint);
 
-// A name taken apart, to be spelled in another way.
+// The parts of a name, to be spelled differently.
 struct NameParts {
   std::vector<std::string> words;  // in small letters, numbers apart, without the side; "mixamorig", "DEF" and the like
                                    // only where there is nothing else

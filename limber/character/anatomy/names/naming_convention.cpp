@@ -98,7 +98,7 @@ bool isOwn(std::string_view pattern) {
   return !pattern.starts_with('~');
 }
 
-// A pattern written out: for one side, with a number or "#" for any, and with or without what stands in brackets.
+// A pattern written out: for one side, with a number or "#" for any, and with or without the text in brackets.
 std::string writtenOut(const NamingConvention& convention, std::string_view pattern, Side side,
                        std::optional<std::size_t> number, bool withBrackets) {
   std::string name;
@@ -151,7 +151,7 @@ const Table& table() {
             for (const bool withBrackets : {false, true}) {
               const std::string key = plainNameOf(writtenOut(convention, pattern, side, {}, withBrackets)).text;
               std::vector<TableEntry>& entries = all[key];
-              // What a convention says first of a name stands.
+              // The first meaning that a convention gives to a name applies.
               if (!entries.empty() && entries.back().convention == c) continue;
               entries.push_back({static_cast<std::uint16_t>(c), {row.role, side, row.pair}});
             }
@@ -289,7 +289,7 @@ class Finder {
   }
 
  private:
-  // The name with the other side in place of its own is that of a joint of the same role.
+  // The name with its side replaced by the other is that of a joint of the same role.
   std::vector<std::optional<Index>> partnersIn(const ConventionMatch& match) const {
     std::unordered_map<std::string, Index> rights;
     for (Index j = 0; j < names_.size(); ++j) {

@@ -17,7 +17,7 @@ namespace limber {
 // What a convention calls a joint.
 enum class JointRole : unsigned char {
   kRoot,        // above the body: no part of it
-  kHelper,      // IK targets, poles, markers of a place: no part of the body
+  kHelper,      // IK targets, poles, position markers: no part of the body
   kAttachment,  // clothes, breasts, correctives, and what else is attached to the body
   kHips,
   kTrunk,
@@ -74,7 +74,7 @@ struct NamingConvention {
   std::string_view name;                            // "Mixamo"
   std::string_view prefix;                          // that its own files put before every name; may be any or none
   std::array<std::string_view, 2> sides;            // left, right
-  std::array<std::string_view, 2> otherSides = {};  // likewise, of the few names that write it in another way
+  std::array<std::string_view, 2> otherSides = {};  // likewise, of the few names that write it differently
   std::span<const RoleNames> roles;
   std::string_view documentation;  // where the names are documented: a page, or a repository and a file
   TorsoTree torso = TorsoTree::kHipsCarryAll;

@@ -1,5 +1,5 @@
-// The conventions themselves. Each list is as its program documents it or writes it; where programs share their names
-// (MotionBuilder's characters are those of many capture systems) they share one row.
+// The conventions themselves. Each list is as its program documents it or writes it; programs with the same names
+// (MotionBuilder's characters are those of many capture systems) have one row.
 #include "limber/character/anatomy/names/naming_convention.h"
 
 #include <algorithm>

@@ -125,7 +125,8 @@ TEST(NamingConvention, AnyPrefixAndNumbersOfExportersArePassedOver) {
   }
 }
 
-// Of conventions that share most names the one whose prefix they have, whatever ends and attachments are called.
+// Of conventions that have most names in common, the one whose prefix they have, whatever ends and attachments are
+// called.
 TEST(NamingConvention, ThePrefixTellsWhose) {
   Skeleton skeleton = testing::personOf(namingConventions().front(), {}).skeleton;
   for (const char* end : {"mixamorig:LeftToeEnd", "mixamorig:RightToeEnd", "mixamorig:HeadEnd"}) {

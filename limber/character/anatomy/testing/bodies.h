@@ -42,7 +42,7 @@ inline Skeleton inRestPose(Skeleton skeleton, const std::map<std::string, Quat>&
   return skeleton;
 }
 
-// A joint more on the way from the parent of `child` to it.
+// Another joint on the path from the parent of `child` to it.
 inline Skeleton withJointBefore(const Skeleton& skeleton, const std::string& child, const std::string& name) {
   Skeleton longer;
   const Index at = skeleton.find(child).value();
@@ -91,7 +91,7 @@ inline Skeleton onTheGround(const Skeleton& skeleton, const std::vector<std::str
   return longer;
 }
 
-// A body with a neck, a tail that hangs down, and four legs of two bones and a paw; the thigh's share of the leg's
+// A body with a neck, a tail that hangs down, and four legs of two bones and a paw; `thigh`: fraction of the leg's
 // metre.
 inline Skeleton quadruped(double thigh) {
   Skeleton skeleton;
@@ -138,7 +138,7 @@ struct MadeBody {
   Skeleton skeleton;
   std::vector<BodyPart> parts;  // #J what each joint is; Segment::kWhole: no landmark
 
-  // At a place in the world.
+  // At a world position.
   void add(const std::string& name, const std::string& parent, const Vec3& at, const BodyPart& part) {
     Vec3 offset = at;
     for (std::optional<Index> up = skeleton.find(parent); up; up = skeleton.joints[*up].parent) {
@@ -156,7 +156,7 @@ inline constexpr NameHabit kNameHabits[] = {NameHabit::kVrm, NameHabit::kMixamo,
 // A person in T-pose, 1.7 m tall, of 22 joints and, where the habit names them, three ends.
 inline MadeBody personWith(NameHabit habit) {
   struct Row {
-    std::array<const char*, 5> names;  // by habit; "" where it has no such joint; * stands for the side
+    std::array<const char*, 5> names;  // by habit; "" where it has no such joint; * is replaced by the side
     int parent;                        // a row
     Vec3 at;                           // the left one's
     PartKind kind;
@@ -239,7 +239,7 @@ inline std::string addChain(MadeBody& body, const std::string& stem, int count, 
   return parent;
 }
 
-// A dog that stands on its toes, with ears, a jaw and a tail.
+// A dog, digitigrade, with ears, a jaw and a tail.
 inline MadeBody dog() {
   MadeBody body;
   const auto center = [](PartKind kind, Segment segment = Segment::kWhole) {
@@ -297,7 +297,7 @@ inline MadeBody crow() {
   return body;
 }
 
-// A snake that lies along its way, the root at the tail's tip; its middle is a trunk or a tail, as one likes.
+// A snake that lies along its path, the root at the tail's tip; its middle may be read as a trunk or as a tail.
 inline MadeBody snake() {
   MadeBody body;
   addChain(body, "Spine", 14, "", {0, 0.05, -0.7}, {0, 0, 0.1},

@@ -39,7 +39,7 @@ class ConventionPerson {
     return conventionName(convention_, role, side, number);
   }
 
-  // Nothing where the convention has no such name: then the parent stands for it.
+  // Adds nothing where the convention has no such name: then the parent is used instead.
   std::string add(const std::string& name, const std::string& parent, const Vec3& at, const BodyPart& part) {
     if (name.empty()) return parent;
     body_.add(name, parent, at, part);
@@ -161,8 +161,8 @@ inline MadeBody personOf(const NamingConvention& convention, const PersonVariant
   return ConventionPerson(convention, variant).make();
 }
 
-// Every variant differs from the others in several ways at once; together they have each number of necks and spines,
-// and everything beside.
+// Every variant differs from the others in several respects at once; together they have each number of necks and
+// spines, and all other options.
 inline std::vector<PersonVariant> personVariants() {
   std::vector<PersonVariant> variants(9);
   variants[1] = {1, 0, false, false, false, false, true, false, false, false, false};

@@ -14,7 +14,7 @@ inline constexpr std::string_view kFbxCreationTime = "1970-01-01 10:00:00:000";
 
 // The file with these records at its top level: header, records, the empty record that ends them, and the footer that
 // Autodesk's readers look for. A record without values is written with an end of its (empty) list. Arrays are deflated
-// (encoding 1) where that makes them shorter. Little-endian, 32-bit places. Throws Error kLimit where the file would
+// (encoding 1) where that makes them shorter. Little-endian, 32-bit offsets. Throws Error kLimit where the file would
 // reach 4 GB. Cost: O(bytes).
 Bytes encodeFbxFile(std::span<const FbxNode> records);
 

@@ -18,7 +18,7 @@ bool looksLikeFbx(ByteSpan bytes);
 // Text has no types: a whole number is an int64, another a double, a word without quotes (T, Shading) a string; an
 // array ("*3 { a: 1,2,3 }") is a vector of int64 where all are whole, else of double. In quoted text &quot; is a quote.
 //
-// Throws Error kUnsupported for versions before 7.0 and big-endian files, kBadData (with the byte's place) for what is
+// Throws Error kUnsupported for versions before 7.0 and big-endian files, kBadData (with the byte offset) for what is
 // broken, kLimit where arrays inflate to far more than any file of that size would. Records are at most 64 deep; memory
 // is bounded by the file's size. Cost: linear.
 FbxFile parseFbx(ByteSpan bytes);

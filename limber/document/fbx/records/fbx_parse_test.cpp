@@ -29,7 +29,7 @@ struct BinaryWriter {
   }
   std::string end() const { return std::string(isLong() ? 25 : 13, '\0'); }
   std::string header() const { return std::string("Kaydara FBX Binary  \0\x1a\0", 23) + raw(version); }
-  // A record that begins at `at`; `children` takes the place where they begin.
+  // A record that begins at `at`; `children` is called with the offset where they begin.
   template <typename Children>
   std::string node(std::size_t at, const std::string& name, const std::vector<std::string>& values,
                    const Children& children) const {

@@ -7,7 +7,7 @@
 
 namespace limber {
 
-// The value of that place as a number or as text (raw bytes are no text); none where there is no such value.
+// The value at that index as a number or as text (raw bytes are no text); none where there is no such value.
 std::optional<double> fbxNumber(const FbxNode& node, std::size_t index);
 std::optional<std::int64_t> fbxInteger(const FbxNode& node, std::size_t index);  // a fraction is cut off
 std::optional<std::string_view> fbxText(const FbxNode& node, std::size_t index);

@@ -1,4 +1,4 @@
-// What the decoders of compressed geometry share.
+// Common parts of the decoders of compressed geometry.
 #pragma once
 
 #include <cstddef>
@@ -13,8 +13,8 @@ namespace limber {
 inline constexpr const char* kDraco = "KHR_draco_mesh_compression";
 inline constexpr const char* kMeshopt[] = {"EXT_meshopt_compression", "KHR_meshopt_compression"};
 
-// Memory that decoding may still ask for. Draco's files grow ten to fifty times; what a small file can claim is held to
-// a multiple of its size (read_bounds.h).
+// Memory that decoding may still allocate. Draco's files grow ten to fifty times; what a small file can claim is
+// limited to a multiple of its size (read_bounds.h).
 class DecodeBudget {
  public:
   explicit DecodeBudget(std::uint64_t bytes) : left_(static_cast<std::size_t>(bytes)) {}
@@ -28,7 +28,7 @@ class DecodeBudget {
 // What decoding did to the document.
 struct Decoded {
   std::set<Index> accessors;  // whose values are new
-  std::set<Index> buffers;    // that held compressed bytes
+  std::set<Index> buffers;    // that contained compressed bytes
 };
 
 // Which of kMeshopt the view is compressed by; null where by none.

@@ -169,7 +169,7 @@ class DracoReader {
     store(accessor, std::move(piece), location);
   }
 
-  // The accessor's type and count. Its data are what is being decoded, so the count is held to what was.
+  // The accessor's type and count. Its data are still being decoded, so callers check the count against those.
   AccessorLayout shapeOf(Index accessor) const { return accessorShape(asset_, accessor); }
 
   // Draco rounds each skin weight by itself; the sum of a vertex's weights is made 1 again.

@@ -83,8 +83,8 @@ std::vector<EncodedView> findEncoded(const Asset& asset) {
 
 }  // namespace
 
-// The decoded bytes fill the buffer that stands for them, one view behind the other, at offsets of our own: those in
-// the file are a claim about memory.
+// The decoded bytes fill the fallback buffer, one view after the other, at offsets of our own: those in the file are a
+// claim about memory.
 void decodeMeshopt(Asset& asset, DecodeBudget& budget, Decoded& decoded) {
   const std::vector<EncodedView> views = findEncoded(asset);
   std::vector<std::size_t> sizes(asset.buffers.size(), 0), offsets;

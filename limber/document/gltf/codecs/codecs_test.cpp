@@ -168,7 +168,7 @@ TEST(Meshopt, PlainFallbackIsTakenAsItIs) {
   const Index plain = model.view<float>({1, 2, 3});
   model.push("accessors", {{"bufferView", plain}, {"componentType", 5126}, {"count", 3}, {"type", "SCALAR"}});
   const std::size_t offset = model.binary.size();
-  model.binary.resize(offset + 40, 0xee);  // stands for compressed bytes; never decoded
+  model.binary.resize(offset + 40, 0xee);  // a substitute for compressed bytes; never decoded
   model.json["bufferViews"][plain]["extensions"][kMeshoptName] = {{"buffer", 0},      {"byteOffset", offset},
                                                                   {"byteLength", 40}, {"byteStride", 4},
                                                                   {"count", 3},       {"mode", "ATTRIBUTES"}};
@@ -366,7 +366,7 @@ TEST(Draco, DecodesBothMethods) {
     }
     EXPECT_THAT(readFloats(asset, 4), ElementsAre(1, 2, 3));
     EXPECT_EQ(documentJson(asset).dump().find("draco"), std::string::npos);
-    EXPECT_EQ(asset.document.bufferViews.size(), 2u + 3);  // the compressed one's place is used again
+    EXPECT_EQ(asset.document.bufferViews.size(), 2u + 3);  // the compressed one's number is reused
     EXPECT_EQ(asset.buffers[0].bytes.size(), 12u + 144 * (12 + 4 + 16) + 726 * 2);
     const std::vector<double>& highest = asset.document.accessors[1].max;
     EXPECT_EQ(static_cast<float>(highest.at(0)), *std::max_element(positions.begin(), positions.end()));  // told anew

@@ -71,7 +71,7 @@ inline void nameShapes(Asset& asset, Index mesh, const std::vector<std::string>&
   asset.document.meshes[mesh].extras.change()["targetNames"] = names;
 }
 
-// Where the node of that bone stands, as a VRM's humanoid names it.
+// The world position of that bone's node, as a VRM's humanoid names the bone.
 inline Vec3 bonePosition(const Asset& asset, const std::string& bone) {
   const Json& bones = extensionOf(asset.document, "VRMC_vrm")->at("humanoid").at("humanBones");
   return readSceneGraph(asset.document).world[bones.at(bone).at("node").get<Index>()].translation();

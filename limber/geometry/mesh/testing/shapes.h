@@ -126,7 +126,7 @@ inline TriMesh pages(int count) {
     for (Index k = 0; k < 2; ++k) {
       const Triangle lower = {k, first + k, k + 1}, upper = {k + 1, first + k, first + k + 1};
       mesh.triangles.push_back(lower);
-      mesh.triangles.push_back(page % 2 ? Triangle{upper[0], upper[2], upper[1]} : upper);  // facing either way
+      mesh.triangles.push_back(page % 2 ? Triangle{upper[0], upper[2], upper[1]} : upper);  // alternating sides
     }
   }
   return mesh;
@@ -179,7 +179,7 @@ inline TriMesh sliveredGrid() {
   }
   mesh.triangles.push_back({0, 1, 2});    // three in a line
   mesh.triangles.push_back({0, 1, 2});    // and once more
-  mesh.triangles.push_back({14, 21, 7});  // with two corners at one place
+  mesh.triangles.push_back({14, 21, 7});  // with two corners at one position
   return mesh;
 }
 

@@ -10,8 +10,9 @@
 namespace limber {
 
 // By the character's own skin (RetargetOptions::skin): where its elbows, forearms and hands are deeper in trunk, head
-// or legs than at rest, the arm swings out about the shoulder, then the forearm about the elbow, by as little as takes
-// them out. Ways out change at once where a body has edges: who asks smooths them over time, then swings.
+// or legs than at rest, the arm swings out about the shoulder, then the forearm about the elbow, by the least that
+// takes them out. The displacement out is discontinuous where a body has edges: the caller smooths it over time, then
+// swings.
 class ArmClearance {
  public:
   enum class Bone { kUpper, kForearm };
@@ -36,7 +37,7 @@ class ArmClearance {
   };
 
   SkinTube::Depth depthAt(const Vec3& point, const BodyFrame& frame) const;
-  // The way on which the arm there is out again; nothing where it is out.
+  // The displacement that takes the arm there out again; zero where it is out.
   Vec3 displacementOutAt(const Arm& arm, std::size_t probe, const BodyFrame& frame) const;
   static Vec3 positionOf(const Limb& limb, double along, const BodyFrame& frame);
 

@@ -7,9 +7,9 @@
 
 namespace limber {
 
-// How far an animal has to rise for its body to come no further down than the source's, scaled: bodies are not as wide
-// or deep as the source's, and hips that go the source's way take them below the ground. Looks at the trunk and where
-// legs begin: heads, tails and feet may come down on their own.
+// How far an animal has to rise for its body to come no further down than the source's, scaled: bodies differ in width
+// and depth, and hips that follow the source's path take them below the ground. Looks at the trunk and where legs
+// begin: heads, tails and feet may come down on their own.
 class BodyLift {
  public:
   // Nothing to lift for people. `setup` must outlive this.

@@ -52,13 +52,13 @@ Vec3 level(const Vec3& v) {
   return {v.x(), 0, v.z()};
 }
 
-// x where it is small, at most `most` either way.
+// x where it is small, at most `most` in either direction.
 double saturated(double x, double most) {
   const double fraction = x / most;
   return x / std::sqrt(std::sqrt(1 + fraction * fraction * fraction * fraction));
 }
 
-// Share to which the body makes up for what the leg lacks to reach its goal.
+// Fraction to which the body makes up for what the leg lacks to reach its goal.
 double followed(const Leg& leg) {
   return leg.footDriven ? leg.upright * smoothStep(1 - leg.lift / kLifted) : 1;
 }
@@ -147,8 +147,8 @@ Quat Pelvis::turnFor(std::span<const Leg> legs, const BodyFrame& frame) const {
   return fromRotationVector(turn / std::sqrt(1 + turn.squaredNorm() / (kMaxTurn * kMaxTurn)));
 }
 
-// By the pelvis rising, every leg that is planted would be as long as its joint angles make it: the mean of those ways.
-// The more level a leg is, the less rising does to its length, and the less it counts.
+// The rise of the pelvis with which every planted leg would be as long as its joint angles make it: the weighted mean
+// over the legs. The more level a leg is, the less rising does to its length, and the less it counts.
 double Pelvis::riseFor(std::span<const Leg> legs, const BodyFrame& frame, const Quat& turn) const {
   double sum = 0, weights = 0;
   for (const Leg& leg : legs) {
@@ -165,8 +165,8 @@ double Pelvis::riseFor(std::span<const Leg> legs, const BodyFrame& frame, const 
   return std::clamp(sum / std::max(weights, 1.0) + footDrivenOffset(legs, frame), -most, most);
 }
 
-// Their joint angles have the foot elsewhere: legs that stand bend as the source's do. A mean of the ways, without a
-// kink where another leg takes over.
+// These legs' joint angles have the foot elsewhere: legs in stance bend as the source's do. A mean of the rises,
+// without a kink where another leg takes over.
 double Pelvis::footDrivenOffset(std::span<const Leg> legs, const BodyFrame& frame) const {
   const double soft = kSoftBend * setup_.targetHipHeight;
   double sum = kStay, weights = kStay;

@@ -21,13 +21,13 @@ class Pelvis {
   // so. `frame` are the globals of `target` by joint angles alone; both are brought up to date.
   void levelHips(Pose& target, BodyFrame& frame) const;
 
-  // A turn about the hips (RootPlacer::turnPelvis) and then a way up, metres.
+  // A rotation about the hips (RootPositioner::turnPelvis) and then a displacement up, metres.
   struct Move {
     Quat turn = Quat::Identity();
     double up = 0;
   };
-  // By the legs' goals, for legs that are where `frame` has them. `rise`: where given, in place of riseFor(). Where a
-  // trunk tilts, hips and shoulders each follow their own legs.
+  // By the legs' goals, for legs that are where `frame` has them. `rise`: if given, replaces riseFor(). Where a trunk
+  // tilts, hips and shoulders each follow their own legs.
   Move moveFor(std::span<const Leg> legs, const BodyFrame& frame, std::optional<double> rise = std::nullopt) const;
   // The turn of it, which brings planted legs nearer to their joint angles.
   Quat turnFor(std::span<const Leg> legs, const BodyFrame& frame) const;
@@ -44,7 +44,7 @@ class Pelvis {
 
  private:
   Move moveOfEnds(std::span<const Leg> hind, std::span<const Leg> fore, const BodyFrame& frame) const;
-  // `rise`, and down as far as the longest way asks.
+  // `rise`, and down as far as the leg that needs it most requires.
   double shiftFor(std::span<const Leg> legs, const BodyFrame& frame, const Quat& turn, double rise) const;
   double raiseFor(std::span<const Leg> legs, const BodyFrame& frame, double shift) const;
   double steepness(const Leg& leg, double across, double reach) const;
@@ -53,7 +53,7 @@ class Pelvis {
   const RetargetSetup& setup_;
   const RootPositioner& root_;
   TrunkTilt tilt_;
-  double hipTurns_ = 1;  // share of the source's turns that wide hips take over
+  double hipTurns_ = 1;  // fraction of the source's rotations that wide hips take over
   Index leftHip_ = 0, rightHip_ = 0;
   std::optional<Index> trunk_;  // its last joint
 };

@@ -14,11 +14,10 @@ Vec3 middleOf(std::span<const Index> joints, const std::vector<Vec3>& positions)
 
 // Moves a posed target to where the source's motion has it.
 //
-// People: the hips' translation brings the pelvis to its place; on the same body (RetargetSetup::sameBody) every joint
-// goes its partner's way from rest as well. Others: every matched joint's way from rest, scaled; of
-// quadrupeds that were matched by form that of the hindquarters alone.
-// Loose joints (looseJoints; of animals the feet that ride on their shins) are put where their carriers have them, but
-// on the same body.
+// People: the hips' translation brings the pelvis to its position; on the same body (RetargetSetup::sameBody) every
+// joint is displaced from rest as its partner is, as well. Others: every matched joint is displaced from rest as its
+// partner, scaled; in quadrupeds that were matched by form only the hindquarters are. Loose joints (looseJoints; of
+// animals the feet that ride on their shins) are put where their carriers have them, except on the same body.
 class RootPositioner {
  public:
   explicit RootPositioner(const RetargetSetup& setup);
@@ -68,8 +67,8 @@ class RootPositioner {
   std::optional<Index> hips_;     // of others than people the joint that carries all legs
   std::optional<Index> pelvis_;   // the joint that carries the legs and the trunk
   std::vector<Index> hipJoints_;  // of the legs, of four those behind
-  // What goes the source's way of a quadruped that was matched by form: the joint that carries its hind legs; where
-  // that carries the forelegs too, and so lies elsewhere, the joints at which the hind legs begin.
+  // What follows the source's displacement in a quadruped that was matched by form: the joint that carries its hind
+  // legs; where that carries the forelegs too, and so lies elsewhere, the joints at which the hind legs begin.
   std::vector<Index> hindquarters_, sourceHindquarters_;
   std::vector<Index> turnsAlong_;      // joints below it that turn with it
   std::vector<Index> pelvisChildren_;  // what hangs on these and on the pelvis

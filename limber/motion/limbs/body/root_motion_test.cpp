@@ -15,7 +15,7 @@ namespace {
 
 using limber::testing::oddlyBuilt;
 
-// The rest pose of `target`, placed where `source` stands when moved by `way` from rest.
+// The pelvis of `target` in rest pose, positioned for `source` moved by `displacement` from rest.
 Vec3 retargetedPelvis(const Skeleton& source, const Skeleton& target, const Vec3& displacement,
                       const RetargetOptions& options) {
   const RetargetSetup setup(source, target, matchSkeletons(source, target), options);
@@ -49,7 +49,7 @@ TEST(RootMotion, TheWayScalesWithTheHips) {
   }
 }
 
-// High ankles: the legs are a smaller share of the hips' height.
+// High ankles: the legs are a smaller fraction of the hips' height.
 TEST(RootMotion, HipsGoUpAndDownAsTheirLegsDo) {
   const Skeleton person = practiceHumanoid();
   Skeleton booted = person;
@@ -65,7 +65,7 @@ TEST(RootMotion, HipsGoUpAndDownAsTheirLegsDo) {
   };
   EXPECT_NEAR(height(0), setup.targetHipHeight, 1e-9);
   EXPECT_NEAR(height(-setup.sourceHipHeight), 0, 1e-9) << "who lies on the ground lies on it";
-  // Its legs are as long as the source's: little and upward ways stay as long.
+  // Its legs are as long as the source's: small and upward displacements stay as long.
   EXPECT_NEAR(height(0.1) - height(0), 0.1, 1e-9);
   EXPECT_NEAR(height(0) - height(-0.001), 0.001, 1e-5);
 }
@@ -180,7 +180,8 @@ TEST(RootMotion, AnimalsGoAsFarAsTheyStandHigh) {
   EXPECT_NEAR(mixed, 3 / std::hypot(1, 0.5), 1e-12);
 }
 
-// Bodies of one form, whatever their joints' own axes: what moves on its parent goes the same way through space.
+// Bodies of one form, whatever their joints' own axes: a joint that moves on its parent has the same displacement in
+// space.
 TEST(RootMotion, WaysOfAnimalsJointsAreThoseThroughSpace) {
   const Skeleton one = limber::testing::quadruped(0.5), other = limber::testing::withOtherAxes(one);
   const RetargetSetup setup(one, other, matchSkeletons(one, other), {});

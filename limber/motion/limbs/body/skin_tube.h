@@ -19,7 +19,7 @@ class SkinTube {
 
   struct Depth {
     double depth = 0;          // metres below the surface; negative outside
-    Vec3 out = Vec3::UnitZ();  // the way out, away from the axis
+    Vec3 out = Vec3::UnitZ();  // the direction out, away from the axis
   };
   // Of a point of the person's space; none beyond the tube's ends.
   std::optional<Depth> depthOf(const Vec3& point, const BodyFrame& frame) const;

@@ -9,7 +9,7 @@ namespace limber {
 
 // Of quadrupeds that were matched by their form. Trunks differ in length more than legs do: one that is longer and
 // turns as the source's takes the shoulders further, and forefeet off the ground. It turns about the hips; legs, neck
-// and tail on it keep how they are turned (RootPlacer::turnPelvis).
+// and tail on it keep how they are turned (RootPositioner::turnPelvis).
 class TrunkTilt {
  public:
   // Both must outlive this.
@@ -27,7 +27,7 @@ class TrunkTilt {
   Vec3 trunkOf(const BodyFrame& frame) const;
   // The turn by which they rise by that, metres, as far as the trunk is long.
   static Quat turnFor(double rise, const Vec3& trunk);
-  // How they go for each metre that they rise so, to first order; straight up where the trunk stands upright.
+  // Their displacement for each metre of that rise, to first order; straight up where the trunk is upright.
   static Vec3 liftOf(const Vec3& trunk);
 
  private:

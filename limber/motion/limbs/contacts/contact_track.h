@@ -7,8 +7,8 @@
 //     source --ContactReader, frame by frame--> FootContact --> LimbGoals, FootLock, Pelvis, levelToes
 //            --ContactTrack, the whole motion--> spans of contacts, how firm --> refineSpacetime, smoothMotion
 //
-// The reader is causal, so that live motion and whole motions have the same contacts. What else is to be known of a
-// contact (places on surfaces, of hands as well) belongs in here.
+// The reader is causal, so that live motion and whole motions have the same contacts. Anything else to be known of a
+// contact (positions on surfaces, of hands as well) belongs in here.
 #pragma once
 
 #include <optional>

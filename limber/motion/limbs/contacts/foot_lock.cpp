@@ -1,7 +1,7 @@
 // Given up: that a planted foot follows the source's anchor, by a capped chase at up to 0.02 body heights a second. By
 // the judge (docs/retargeting.md) feet of limb-ik slid by 0.023 heights/s instead of 0.015 (0.018 instead of 0.011 on
-// the half held out), while the means of jerk, its peaks and accelerations at contacts stayed as they were: that a
-// standing foot is held still is not what makes the body jerk.
+// the held-out half), while the means of jerk, its peaks and accelerations at contacts stayed as they were: pinning a
+// planted foot is not what makes the body jerk.
 #include "limber/motion/limbs/contacts/foot_lock.h"
 
 #include <cmath>
@@ -15,7 +15,7 @@ namespace {
 // 1/seconds. Along the ground a foot has to be planted at once, down to it and back to where it would be there is time.
 // By sliding on the shared motions (0.032 -> 0.008 hip heights a second) and by jerk.
 constexpr double kGrip = 80;        // 40 to 120; of the fractions to which it is free
-constexpr double kFading = 20;      // 10 to 40; of the displacement by which it was held back
+constexpr double kFading = 20;      // 10 to 40; of the displacement that pinning prevented
 constexpr double kSettling = 18;    // 10 to 30; of its height over where it has to be (20 before)
 constexpr double kUntwisting = 10;  // 5 to 20; of the twist of a foot that is free
 constexpr double kRolling = 40;     // 20 to 80; of the speed left where the pinned point changes
@@ -91,11 +91,11 @@ void FootLock::moveAlong(const Frame& frame, double seconds, double slack) {
   catchUpSpeed_ *= freedom;
   const Vec3 freeDisplacement = level(frame.ankle - before_->ankle) + left + behind;
   const bool byToes = frame.anchor == FootAnchor::kNone ? byToes_ : frame.anchor == FootAnchor::kToes;
-  // Where another point is held from here on, the ankle's speed goes over to that which this point leaves it.
+  // When another point becomes pinned, the ankle's speed changes over to the one that this point leaves it.
   if (byToes != byToes_) rollSpeed_ += (byToes ? 1 : -1) * (1 - freedom) / seconds * rolled_;
   byToes_ = byToes;
   rollSpeed_ *= std::exp(-kRolling * seconds);
-  // The point moves by its share of the free way, and the ankle as the foot turns about it.
+  // The point moves by its fraction of the free displacement, and the ankle as the foot turns about it.
   out_ += freedom * freeDisplacement + seconds * rollSpeed_;
   if (byToes_) out_ -= (1 - freedom) * rolled_;
 }

@@ -14,15 +14,15 @@ class FootLock {
     Vec3 ankle = Vec3::Zero(), toes = Vec3::Zero();
     FootAnchor anchor = FootAnchor::kNone;
     double ankleGround = 0, toesGround = 0;
-    bool flat = false;  // heel and toes stand both
-    double slip = 0;    // share of its free way that it takes while it is held
+    bool flat = false;  // both heel and toes rest on the ground
+    double slip = 0;    // fraction of its free displacement that it takes while it is pinned
   };
 
-  // Where the ankle goes. Along the ground the foot moves as it would be free to, times a share that goes to 0 while it
-  // is held, but for what it may slip, and back to 1; the way that it was held back is made up for by a critically
-  // damped spring once it is free. Its height springs to the ground and back. So nothing jumps, and a foot never lands
-  // slower than it does unheld. One that is held back by more than `slack` goes free until it has caught up. A foot
-  // that stands flat does not turn about the vertical either.
+  // Where the ankle goes. Along the ground the foot moves by its free displacement times a fraction that goes to 0
+  // while it is pinned, except for its slip, and back to 1; the displacement that pinning prevented is made up for by a
+  // critically damped spring once the foot is free. Its height springs to the ground and back. So nothing jumps, and a
+  // foot never lands slower than it does without the lock. A foot that lags by more than `slack` is freed until it has
+  // caught up. A foot that rests flat does not turn about the vertical either.
   Vec3 next(const Frame& frame, double seconds, double slack);
   // How far it is turned about +Y against the free foot, radians.
   double twist() const { return twist_; }
@@ -41,7 +41,7 @@ class FootLock {
   void moveUpright(const Frame& frame, double seconds);
 
   FootAnchor anchor_ = FootAnchor::kNone;
-  bool byToes_ = false;  // the point that is held, or was at last
+  bool byToes_ = false;  // whether the toes are, or last were, the pinned point
   Vec3 out_ = Vec3::Zero();
   Factor freedom_;
   bool lost_ = false;
@@ -50,7 +50,7 @@ class FootLock {
   Factor turning_;
   bool twisted_ = false;
   double twist_ = 0;
-  Vec3 roll_ = Vec3::Zero(), rolled_ = Vec3::Zero();  // from the ankle to the toes, and the level way in this frame
+  Vec3 roll_ = Vec3::Zero(), rolled_ = Vec3::Zero();  // from the ankle to the toes, and its level change in this frame
   std::optional<Frame> before_;
 };
 

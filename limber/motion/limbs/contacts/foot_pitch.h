@@ -8,7 +8,8 @@
 
 namespace limber {
 
-// Share of the source's pitch that the leg's foot takes over: 1 up to 1.3 times the source's length, less the longer.
+// Fraction of the source's pitch that the leg's foot takes over: 1 up to 1.3 times the source's length, less the
+// longer.
 double footPitchFraction(const RetargetSetup& setup, const Leg& leg);
 
 // Long feet (Leg::footPitch) are as level as that: long toes else go through the ground, and the heels, or the hocks of

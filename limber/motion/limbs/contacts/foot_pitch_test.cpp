@@ -10,8 +10,8 @@ namespace {
 
 using limber::testing::turn;
 
-// By how many degrees the left foot is turned by limitFootPitch, of someone with feet `times` as long who stands but
-// for `hips` and `foot`; `left` gets what is left of the turn of the foot against the ground.
+// By how many degrees limitFootPitch turns the left foot of a person with feet `times` as long, at rest except for
+// `hips` and `foot`; `left` is the remaining rotation of the foot against the ground.
 struct LimitedFoot {
   double changed = 0, left = 0, fraction = 0;
 };

@@ -1,4 +1,4 @@
-// When a point of a foot stands on the ground, told as the motion comes, without looking ahead.
+// When a point of a foot rests on the ground, detected causally, without looking ahead.
 #pragma once
 
 #include <array>

@@ -5,7 +5,7 @@
 namespace limber {
 namespace {
 
-// Half the way between 2 and 3 steps a second.
+// Halfway between 2 and 3 steps a second.
 TEST(JointClock, StepsASecondAreBlended) {
   const StridePhases phases{GaitPhase({0, 0.5, 1}, 0), GaitPhase({0, 1.0 / 3, 2.0 / 3}, 0), 3, 2};
   JointClock clock(phases, 0);

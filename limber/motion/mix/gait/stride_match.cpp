@@ -45,7 +45,7 @@ std::vector<StridePhases> laidOnto(const Falls& a, const Falls& b) {
   std::set<Index> feet;
   for (const Footfall& fall : a) feet.insert(fall.foot);
   const std::vector<double> ofA = momentsOf(a), ofB = momentsOf(b);
-  // Outwards from the first on the first, so that the same two motions in the other order are laid the same way.
+  // Outwards from aligning the first of both, so that the same two motions in the other order are aligned the same.
   const auto furthest = static_cast<std::ptrdiff_t>(std::max(a.size(), b.size()));
   const std::ptrdiff_t side = a.front().foot < b.front().foot ? 1 : -1;
   for (std::ptrdiff_t i = 0; i < 2 * furthest; ++i) {

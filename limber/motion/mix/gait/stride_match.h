@@ -15,11 +15,11 @@ struct StridePhases {
   double stride = 1;        // after that much of the scale the same foot comes down again
 };
 
-// Every way to lay the footfalls of `b` onto those of `a`, one after the other, in which at least one meets another and
-// feet agree (after Park, Shin, Shin 2002, On-line locomotion generation based on motion blending; Menardais, Kulpa,
-// Multon, Arnaldi 2004, Synchronization for dynamic blending of motions): those in which most meet first, of equal ones
-// those that shift one against the other by the fewest footfalls. Where feet come down in other orders (a walk and a
-// gallop) the footfalls of one foot alone are laid onto each other, of the foot that has most. None where one of the
+// Every alignment of the footfalls of `b` with those of `a`, one after the other, in which at least one meets another
+// and feet agree (after Park, Shin, Shin 2002, On-line locomotion generation based on motion blending; Menardais,
+// Kulpa, Multon, Arnaldi 2004, Synchronization for dynamic blending of motions): those in which most meet first, of
+// equal ones those that shift one against the other by the fewest footfalls. Where feet come down in other orders (a
+// walk and a gallop) only the footfalls of one foot are aligned, of the foot that has most. None where one of the
 // motions has no two footfalls to match. O(footfalls^2).
 std::vector<StridePhases> matchStrides(std::span<const Footfall> a, std::span<const Footfall> b);
 

@@ -11,9 +11,9 @@
 
 namespace limber::testing {
 
-// A chain of capsules through places, from one radius to the other; on both sides where it is off the middle.
+// A chain of capsules through positions, from one radius to the other; on both sides where it is off the middle.
 inline void addChain(TriMesh& mesh, const std::vector<Vec3>& positions, double first, double last) {
-  constexpr int kSteps = 6;  // between two places
+  constexpr int kSteps = 6;  // between two positions
   const double count = static_cast<double>(kSteps * (positions.size() - 1));
   for (const double side : {1.0, -1.0}) {
     double done = 0;

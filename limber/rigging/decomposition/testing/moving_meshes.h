@@ -1,4 +1,4 @@
-// Meshes that move in known ways, made in code for tests. Not installed.
+// Meshes with known motions, made in code for tests. Not installed.
 #pragma once
 
 #include <cmath>

@@ -79,7 +79,7 @@ inline std::vector<Vec3> jointPositions(const Skeleton& skeleton) {
   return positions;
 }
 
-// All joints as landmarks, at `places`.
+// All joints as landmarks, at `positions`.
 inline std::vector<JointLandmark> landmarksAt(const std::vector<Vec3>& positions) {
   std::vector<JointLandmark> landmarks;
   for (Index j = 0; j < positions.size(); ++j) landmarks.push_back({j, positions[j]});

@@ -24,7 +24,7 @@ namespace {
 constexpr double kCoarseNodes = 5e3;     // of the grid that the first descent is on
 constexpr double kCoarseTolerance = 10;  // times the tolerance, on it
 constexpr double kCoarseEnough = 0.7;    // of the resolution of the grid that the last descent is on
-constexpr double kSurely = 0.2;          // of the way to other bones: from there on weights begin at 1
+constexpr double kSurely = 0.2;          // of the path between bones, at both ends: there weights begin at 0 or 1
 constexpr Index kJointsAtOnce = 16;      // between looks at whether to go on
 
 LatticeGraph graphOf(const InsideLattice& lattice) {
@@ -38,7 +38,7 @@ LatticeGraph graphOf(const InsideLattice& lattice) {
   return graph;
 }
 
-// What is held where bones pass: by cell, for each joint that has a part of it.
+// The cells that are pinned where bones pass, for each joint that has a part of them.
 struct PinnedCells {
   struct Part {
     Index cell;
@@ -50,7 +50,7 @@ struct PinnedCells {
 };
 
 PinnedCells holdCells(InsideLattice& lattice, std::span<const Bone> bones) {
-  std::map<Index, std::map<Index, double>> byJoint;  // how many places of its bones lie in a cell
+  std::map<Index, std::map<Index, double>> byJoint;  // how many samples of its bones lie in a cell
   for (Bone bone : bones) {
     bone.radius = 0;
     for (const Index cell : lattice.cellsAlong(bone)) byJoint[bone.joint][cell] += 1;
@@ -85,7 +85,7 @@ struct LatticeWeights {
   std::vector<float> weights;  // cells' rows, a column for each of the joints
 };
 
-// By node: the fewest edges to one of some; kNoIndex where there is no way.
+// By node: the fewest edges to one of some; kNoIndex where there is no path.
 std::vector<Index> edgesFrom(const LatticeGraph& graph, std::vector<Index> front) {
   std::vector<Index> edges(graph.nodeCount(), kNoIndex);
   for (const Index node : front) edges[node] = 0;
@@ -106,8 +106,8 @@ std::vector<double> pinnedWeights(const Level& level, std::size_t joint) {
   return w;
 }
 
-// Where the first descent begins: what the weights of a bar between two bones are, by the ways to the joint's own cells
-// and to those of others.
+// Where the first descent begins: what the weights of a bar between two bones are, by the path lengths to the joint's
+// own cells and to those of others.
 std::vector<double> weightsByDistance(const Level& level, std::size_t joint) {
   std::vector<double> w = pinnedWeights(level, joint);
   std::vector<Index> own, others;

@@ -34,7 +34,7 @@ WeightResult smoothWeightsOf(const TriMesh& mesh, const std::vector<Bone>& bones
 // Two discs through a bar, as bones across it; between them the weights of a beam.
 TEST(BoundedBiharmonic, BetweenTwoClampedEndsIsTheCubic) {
   const TriMesh bar = testing::moved(testing::tube(16, 41, true), {1, 0.4f, 0.4f}, Vec3f::Zero());
-  // Each end is held whole, along the bar: its slope is 0 there.
+  // Each end is pinned across its whole width: the slope along the bar is 0 there.
   std::vector<Bone> bones;
   for (const double y : {-0.03, -0.015, 0.0, 0.015, 0.03}) {
     for (const double z : {-0.03, -0.015, 0.0, 0.015, 0.03}) {
@@ -65,7 +65,7 @@ TEST(BoundedBiharmonic, FallsAlongALimbAndReachesNoFurtherThanTheNextBone) {
     for (int ring = 0; ring < 61; ++ring) {
       const auto v = static_cast<Index>(ring * 16 + column);
       const double x = limb.mesh.position(v).x(), first = weightAt(weights, v, 0);
-      EXPECT_LE(first, last + 0.01) << x;  // no maximum on the way
+      EXPECT_LE(first, last + 0.01) << x;  // no maximum in between
       last = first;
       if (x < -0.35) {
         EXPECT_GT(first, 0.97) << x;

@@ -15,7 +15,7 @@ namespace limber {
 namespace {
 
 constexpr double kUnitOfFalloff = 0.01;                                // longest sides
-constexpr int kUnit = 10;                                              // of a way, to a cell
+constexpr int kUnit = 10;                                              // length of a step to a neighbor by face
 constexpr std::array<std::uint32_t, 4> kStepLength = {0, 10, 14, 17};  // by the number of axes that a step goes along
 constexpr double kMaxMissing = 0.5;  // of the cells round a vertex: what fewer reach is far
 
@@ -33,7 +33,7 @@ class VoxelDistances {
     }
   }
 
-  // Follows all joints at once: cells are settled in the order of their ways, each by the first few joints that come.
+  // Follows all joints at once: cells are settled in the order of path length, each by the first few joints to arrive.
   void run(Progress& progress) {
     const std::vector<Step> steps = allSteps();
     joints_.assign(std::size_t{lattice_.cellCount()} * followed_, kNoIndex);
@@ -60,7 +60,7 @@ class VoxelDistances {
     }
   }
 
-  // The ways (longest sides) from a place to joints, from those of the cells round it; few of the far ones.
+  // The path lengths (longest sides) from a position to joints, from those of the cells round it; few of the far ones.
   template <class Take>
   void forEachDistance(const Vec3& position, const Take& take) const {
     std::array<Index, 8> cells;

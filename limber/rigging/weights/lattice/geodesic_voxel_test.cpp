@@ -1,4 +1,4 @@
-// Ways in a box, where they have a closed form, and round the gap of a horseshoe.
+// Path lengths in a box, where they have a closed form, and round the gap of a horseshoe.
 #include "limber/rigging/weights/lattice/geodesic_voxel.h"
 
 #include <algorithm>
@@ -37,7 +37,7 @@ WeightResult voxelWeightsOf(const TriMesh& mesh, const std::vector<Bone>& bones,
   return geodesicVoxelWeightsWith(voxels, mesh, bones, {}, progress);
 }
 
-// The shortest way in a grid whose steps are 10, 14 and 17 tenths, in its spacings.
+// The length of the shortest path in a grid whose steps are 10, 14 and 17 tenths, in its spacings.
 double chamferDistance(const Vec3& between) {
   std::array<double, 3> along = {std::abs(between.x()), std::abs(between.y()), std::abs(between.z())};
   std::sort(along.begin(), along.end());
@@ -121,7 +121,7 @@ TEST(GeodesicVoxel, FacesThatAreTurnedOrOpenChangeLittle) {
   EXPECT_LT(sum / whole.vertexCount(), 0.05);
 }
 
-// The shortest ways of a small lattice by rounds over all its edges (Bellman, Ford), and weights from these.
+// The shortest paths of a small lattice by rounds over all its edges (Bellman, Ford), and weights from these.
 TEST(GeodesicVoxel, WaysAreTheShortestInTheLattice) {
   const Horseshoe horseshoe;
   GeodesicVoxelOptions voxels;

@@ -19,7 +19,7 @@ constexpr Index kCoarsest = 8;          // spacings, the first cells that are lo
 constexpr double kMargin = 2.5;         // spacings from the mesh to the grid's border, at least
 constexpr double kWindingInside = 0.5;  // winding number from which a point lies inside
 constexpr double kThroughCell = 0.87;   // spacings: half the diagonal of a cell, which the surface passes through then
-constexpr double kSampleStep = 0.5;     // spacings between places of a bone that are looked at
+constexpr double kSampleStep = 0.5;     // spacings between samples of a bone that are looked at
 
 // Finds on an adaptive grid which nodes lie inside or near the surface, with as few questions to both trees as can be:
 // a ball round a node that the surface does not reach lies on one side of it as a whole, so its other nodes need not
@@ -57,7 +57,7 @@ class NodeSides {
   enum class Side : std::uint8_t { kUnknown, kOutside, kInside, kNear };
   enum class State : std::uint8_t { kNew, kKnown, kAsked };
   struct Node {
-    float clear = 0;  // spacings: no surface within; of a node that is asked: what suffices to share the side told
+    float clear = 0;  // spacings: no surface within; of a queried node: enough of it to keep the inferred side
     Side side = Side::kUnknown;
     State state = State::kNew;
   };

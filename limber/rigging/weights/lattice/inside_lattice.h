@@ -29,7 +29,7 @@ class InsideLattice {
  public:
   static constexpr Index kMinCells = 8, kMaxCells = 512;  // along the longest side
 
-  // resolution  cells along the longest side of modelBox, which the grid fills, kLeastCells to kMostCells
+  // resolution  cells along the longest side of modelBox, which the grid fills, kMinCells to kMaxCells
   // Throws Error kBadArgument for others, and for a mesh without triangles.
   InsideLattice(const TriMesh& mesh, const InsideQueries& queries, Index resolution);
 
@@ -45,11 +45,11 @@ class InsideLattice {
     return cellOf_[static_cast<std::size_t>(static_cast<std::ptrdiff_t>(nodes_[cell]) + step)];
   }
 
-  // The cells at places half a spacing apart along a bone, and all that its ball holds; those outside the lattice are
-  // added to it. Places beyond the grid have none. In order, and a cell as often as there are places in it.
+  // The cells at samples half a spacing apart along a bone, and all inside its ball; those outside the lattice are
+  // added to it. Samples beyond the grid have none. In order, and a cell as often as there are samples in it.
   std::vector<Index> cellsAlong(const Bone& bone);
 
-  // The cells among the eight nodes round a place, and their parts in linear interpolation. Returns how many.
+  // The cells among the eight nodes round a position, and their weights in linear interpolation. Returns how many.
   int cellsRound(const Vec3& point, std::array<Index, 8>& cells, std::array<double, 8>& parts) const;
 
  private:

@@ -75,7 +75,7 @@ class WindowProblem {
   std::vector<double> scale_;         // by node of the window: 1 / diagonal of L L
   std::vector<double> x_, gradient_;  // likewise
   std::vector<double> image_;         // L L direction
-  std::vector<double> direction_;     // 0 from the window's nodes on, where the last stands for missing neighbors
+  std::vector<double> direction_;     // 0 from the window's nodes on, where the last represents missing neighbors
   std::vector<double> once_;          // L direction, likewise
   double curvature_ = 0, slope_ = 0;  // direction^T L L direction, and its product with the gradient
   double reduced_ = 0, leaving_ = 0;  // squares of the gradient: between the bounds, as far as a fixed step along it
@@ -233,7 +233,7 @@ Eigen::SparseMatrix<double> WindowProblem::freeEnergy(const std::vector<Index>& 
   return lower;
 }
 
-// Takes all that is free to where they are best if no bound is met on the way, and back within bounds.
+// Moves all free values to their minimum if no bound is met before that, and back within bounds.
 void WindowProblem::minimizeFree() {
   std::vector<Index> free, freeOf(direction_.size(), kNoIndex);
   for (Index i = 0; i < x_.size(); ++i) {

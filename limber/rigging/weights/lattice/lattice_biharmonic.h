@@ -27,9 +27,9 @@ struct BiharmonicOptions {
 // 0 <= w <= 1: the Laplacian energy of Jacobson, Baran, Popović, Sorkine 2011 (equation 3) with the graph's Laplacian,
 // whose own boundary condition is that values do not change across the border.
 //
-//   held  #N: nodes that keep the value they have
-//   w     #N in [0, 1]: where to begin, and the result. Parts of the graph without a held node should begin constant,
-//         and then stay so.
+//   pinned  #N: nodes that keep their value
+//   w       #N in [0, 1]: initial values, and the result. Parts of the graph without a pinned node should begin
+//           constant, and then stay so.
 //
 // MPRGP (Dostál, Schöberl 2005): conjugate gradients on the nodes between the bounds, and steps along the projected
 // gradient that let nodes go or bring them to their bounds; it descends to the one minimum from anywhere. Values are

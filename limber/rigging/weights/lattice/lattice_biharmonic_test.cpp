@@ -86,7 +86,7 @@ TEST(LatticeBiharmonic, ABarBetweenTwoBonesIsTheCubicThroughThem) {
 }
 
 TEST(LatticeBiharmonic, StaysWithinBoundsBeyondABone) {
-  // Held at 1 and 0 side by side: without bounds the line through them would go on.
+  // Pinned at 1 and 0 side by side: without bounds the line through them would go on.
   const LatticeGraph bar = boxGraph(16, 1, 1);
   std::vector<bool> pinned(16, false);
   pinned[7] = pinned[8] = true;

@@ -15,7 +15,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kCurveRate = 60;             // lines a second in place of a curve
+constexpr double kCurveRate = 60;             // lines a second that replace a curve
 constexpr std::size_t kWindow = 512;          // frames of a stretch
 constexpr int kRounds = 9;                    // of correcting the joints' factors
 constexpr double kFirstFactor = 0.5;          // of the tolerance, for each joint alone
@@ -481,7 +481,7 @@ class KeyReducer {
     }
   }
 
-  // A clip that only stands still at its end lasts as long as it did.
+  // A clip that is still at its end lasts as long as it did.
   void keepDuration(Clip& result) const {
     if (result.duration() == clip_.duration()) return;
     const auto extend = [&](const auto& from, auto& to) {

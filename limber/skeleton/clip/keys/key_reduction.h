@@ -20,12 +20,12 @@ struct ReducedClip {
 };
 
 // Keys are left out, and the values of those that stay are moved a little for what is between them (fitKeys); the first
-// and the last stay as they are. Tracks become linear. How far each joint may be
-// off is found from what it carries: every joint may turn by as much as its farthest carried point allows, times a
-// factor that is corrected, from measured distances of all carried points at all keys, until each chain uses the
-// tolerance up (nine rounds). Long clips are cut into stretches that share a key. Tracks that gain nothing from key
-// times of their own get those of others (bytes as glTF stores them). Step tracks lose only keys that change nothing;
-// cubic ones are kept where lines would take more bytes.
+// and the last stay as they are. Tracks become linear. The allowed error of each joint follows from what it carries:
+// every joint may turn by as much as its farthest carried point allows, times a factor that is corrected, from measured
+// distances of all carried points at all keys, until each chain uses the tolerance up (nine rounds). Long clips are cut
+// into stretches with one key in common. Tracks that gain nothing from key times of their own get those of others
+// (bytes as glTF stores them). Step tracks lose only keys that change nothing; cubic ones are kept where lines would
+// take more bytes.
 //
 // What hardly leaves one value (a tenth of the tolerance) gets a single key, of the rest pose where that is near
 // enough. Where 16-bit rotations alone would use up a quarter of the tolerance they stay single precision.

@@ -70,7 +70,7 @@ struct Body {
   }
 };
 
-// Smooth turns of all joints, a wandering root, a tail that stands still.
+// Smooth rotations of all joints, a wandering root, a still tail.
 Clip moving(const Skeleton& skeleton, int frames, double noise = 0) {
   RandomValues random(9);
   Clip clip;
@@ -124,7 +124,7 @@ TEST(ReduceKeys, StillTracksBecomeOneKey) {
   EXPECT_EQ(reduced.clip.scales[0].times.size(), 1u);
 }
 
-// A key of a pose that stands at the end only says how long the clip is.
+// A last key that repeats the pose only sets the clip's duration.
 TEST(ReduceKeys, AClipThatStandsLastsAsLong) {
   const Body body;
   Clip clip;

@@ -59,7 +59,7 @@ Rotation scaled(const Rotation& slope, float by) {
   return Rotation(Eigen::Vector4f(slope.coeffs() * by));
 }
 
-// A spline goes the short way only where neighbours lie on the same side of the sphere.
+// A spline takes the shortest path only where neighbours lie on the same side of the sphere.
 void alignSigns(Keys<Vec3f>&) {}
 void alignSigns(Keys<Rotation>& keys) {
   for (std::size_t k = 1; k < keys.values.size(); ++k) {

@@ -25,8 +25,8 @@ Interpolation interpolationOf(const Clip& clip);
 // checkClip for `skeleton`, and passes it afterwards. Seconds are finite
 // and not negative, else Error kBadArgument; the same where there is no key to move or to take out.
 
-// All of `pose` at that moment, in place of a key that is there. A joint that stands as in rest pose and has no track
-// gets none, but for the turns of roots, so that the key is there; one that gets its first track rests at the keys that
+// All of `pose` at that time, replacing a key that is there. A joint in its rest pose without a track gets none, except
+// for the rotations of roots, so that the key exists; one that gets its first track is in rest pose at the keys that
 // the clip has already.
 void setKey(Clip& clip, const Skeleton& skeleton, const Pose& pose, double seconds);
 
@@ -37,7 +37,7 @@ void setJointKey(Clip& clip, const Skeleton& skeleton, Index joint, const Transf
 // rise. Neighbouring rotations lie on one side of the sphere.
 Clip clipOfKeys(const Skeleton& skeleton, std::span<const Pose> poses, std::span<const double> seconds);
 
-// Takes the place of a key that is at `to` already.
+// Replaces a key that is at `to` already.
 void moveKey(Clip& clip, double from, double to);
 void deleteKey(Clip& clip, double seconds);
 
@@ -83,8 +83,8 @@ struct KeyRetiming {
   double at(double seconds) const { return pivot + scale * (seconds - pivot) + shift; }
 };
 
-// Keys that arrive take the place of those that are there. Both throw Error kBadArgument, and change nothing, where one
-// of `keys` is not there; retimeKeys also where the scale is not above 0 or a key would come before 0.
+// Keys that arrive replace those that are there. Both throw Error kBadArgument, and change nothing, where one of `keys`
+// is not there; retimeKeys also where the scale is not above 0 or a key would come before 0.
 void retimeKeys(Clip& clip, std::span<const JointKey> keys, const KeyRetiming& retiming);
 void deleteKeys(Clip& clip, std::span<const JointKey> keys);
 

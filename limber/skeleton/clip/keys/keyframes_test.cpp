@@ -51,7 +51,7 @@ TEST(Keyframes, ManyPosesGiveTheClipOfOneByOne) {
   for (int k = 0; k < 30; ++k) {
     poses.push_back(elbowBent(k < 3 ? 0 : 20 * k));
     poses.back().locals[2].translation.y() = k > 10 ? 0.1 * k : 0;
-    seconds.push_back(k == 20 ? 3.6101 : k * k * 0.01);  // one of two keys in one place
+    seconds.push_back(k == 20 ? 3.6101 : k * k * 0.01);  // one of two keys at the same time
     setKey(wanted, keyedArm(), poses.back(), seconds.back());
   }
   const Clip clip = clipOfKeys(keyedArm(), poses, seconds);

@@ -85,7 +85,7 @@ void MovementKeys::divide(const MovingTransform& movement, const Bound& bound, c
            (line(from.local.scale, to.local.scale) - local.scale).cwiseAbs().maxCoeff();
   };
   const Key between{middle, movement(middle)};
-  // Of a curve that bends both ways the middle alone may lie on the line.
+  // On a curve that bends in both directions the middle alone may lie on the line.
   const double aside = from.time + kAside * (double{to.time} - from.time);
   if (std::max(distance(middle, between.local), distance(aside, movement(aside))) <= bound.most) return;
   divide(movement, bound, from, between, depth + 1);

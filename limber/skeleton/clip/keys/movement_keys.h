@@ -28,7 +28,7 @@ class MovementKeys {
   //        differ. Keys are put between until it holds, where no more than 256 do between two of `times`.
   MovementKeys(const MovingTransform& movement, std::vector<float> times, double size, double most);
 
-  // In place of what the clip has of that joint; rotations and scales only where they are `changed`.
+  // Replaces the clip's tracks of that joint; rotations and scales only where they are `changed`.
   void writeTo(Clip& clip, Index joint, bool changed) const;
 
  private:

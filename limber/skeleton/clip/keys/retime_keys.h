@@ -9,8 +9,8 @@
 
 namespace limber {
 
-// Key has `seconds`, and `retimed` where time stretched by a scale changes more of it; `chosen` says of a moment
-// whether its key is meant. Returns whether one was. A key that arrives takes the place of one that is there.
+// Key has `seconds`, and `retimed` where time stretched by a scale changes more of it; `chosen` says whether the key at
+// a time is meant. Returns whether one was. A key that arrives replaces one that is there.
 template <class Key, class Chosen>
 bool retime(std::vector<Key>& keys, const Chosen& chosen, const KeyRetiming& retiming) {
   std::vector<Key> stay, arrive;

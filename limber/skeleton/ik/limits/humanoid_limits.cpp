@@ -74,7 +74,7 @@ const std::array<Row, 30>& rows() {
       {{"LittleProximal", "LittleIntermediate", kAaos}, true, Kind::kCondyloid, kAsItIs, -kFront, {-45, 90}, {-20, 20}, {}},
       {{"LittleIntermediate", "LittleDistal", kAaos}, true, Kind::kHinge, kAsItIs, -kFront, {0, 100}, {}, {}},
       {{"LittleDistal", "", kAaos}, true, Kind::kHinge, kAsItIs, -kFront, {0, 90}, {}, {}},
-      // z: abduction 45, adduction 30; twist: 45 each way.
+      // z: abduction 45, adduction 30; twist: 45 in each direction.
       {{"UpperLeg", "LowerLeg", kAaos}, true, Kind::kBall, -kUp, -kLeft, {-30, 120}, {-30, 45}, {-45, 45}},
       {{"LowerLeg", "Foot", kAaos}, true, Kind::kHinge, -kUp, kLeft, {0, 135}, {}, {}},
       // x: toes up 20, down 50; twist: sole inward 35, outward 15.
@@ -91,7 +91,7 @@ AngleRange radians(const AngleRange& degrees, double fraction, bool mirrored) {
                   : AngleRange{scale * degrees.min, scale * degrees.max};
 }
 
-// The mirror image keeps what a turn about X does; turns about Y and Z go the other way.
+// The mirror image keeps rotations about X; rotations about Y and Z change sign.
 JointMotion motionOf(const Row& row, double fraction, bool mirrored) {
   const AngleRange x = radians(row.x, fraction, false), z = radians(row.z, fraction, mirrored);
   const AngleRange twist = radians(row.twist, fraction, mirrored);
@@ -191,7 +191,7 @@ class LimitBuilder {
     Vec3 direction = tip.norm() > 0 ? Vec3((global * tips_[joint]).normalized()) : tPose;
     if (direction == kAsItIs) direction = parentDirection(joint, parent);
 
-    // The bone is seldom exactly across the axis; the axis gives way.
+    // The bone is seldom exactly across the axis, which is therefore adjusted.
     const Vec3 flexion = mirrorAxis(row.flexion, bone.mirrored);
     const Vec3 x = (flexion - flexion.dot(direction) * direction).normalized();
     Mat3 axes;
@@ -211,7 +211,7 @@ class LimitBuilder {
     return displacement.norm() > 0 ? Vec3(displacement.normalized()) : kFront;
   }
 
-  // The spine and the neck share their range among the bones that are there.
+  // The range of the spine and of the neck is divided among the bones that are there.
   double fractionOf(const Row& row) const {
     const auto amongThem = [&](std::initializer_list<std::string_view> names) {
       if (std::find(names.begin(), names.end(), row.range.bone) == names.end()) return 1.0;

@@ -30,7 +30,7 @@ JointLimit turnedLimit(const JointMotion& motion, RandomValues& random) {
   return limit;
 }
 
-// How far the bone may be brought to a direction: what nearestAllowed leaves of the way there, without twist.
+// How far the bone stays from a direction: the distance that nearestAllowed leaves to it, without twist.
 double missBy(const JointLimit& limit, const Vec3& direction) {
   const Quat toParent = limit.neutral * limit.axes;
   const Quat swing = shortestRotation(Vec3::UnitY(), toParent.conjugate() * direction);

@@ -1,4 +1,4 @@
-// How far a joint may turn or slide, and the nearest allowed place to any other.
+// How far a joint may turn or slide, and the nearest allowed state to any other.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ struct AngleRange {
   double min = 0, max = 0;
 };
 
-// Turns every way.
+// Turns in every direction.
 struct FreeJoint {};
 // Does not turn.
 struct FixedJoint {};
@@ -99,7 +99,7 @@ Vec3 nearestAllowedTranslation(const JointLimit& limit, const Vec3& local);
 double limitViolation(const JointLimit& limit, const Quat& local);
 
 // The axes about which an allowed rotation may go on turning while it stays allowed or meets an edge, in the joint's
-// own frame as it stands; the first `count` of three. Edges do not count: a joint at its bound keeps its axes.
+// current frame; the first `count` of three. Edges do not count: a joint at its bound keeps its axes.
 struct TurnAxes {
   std::array<Vec3, 3> axes;
   int count = 0;

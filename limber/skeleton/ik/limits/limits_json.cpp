@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// One joint's entry, read with its place at hand for errors.
+// One joint's entry, read with its location at hand for errors.
 class EntryReader {
  public:
   EntryReader(const Json& entry, std::string where) : entry_(entry), where_(std::move(where)) {
@@ -151,7 +151,7 @@ struct EntryWriter {
   }
 };
 
-// Refuses a key that stands twice in one object: the parser would keep one of the two without a word.
+// Refuses a key that occurs twice in one object: the parser would silently keep one of the two.
 class KeyGuard {
  public:
   void take(std::size_t depth, const std::string& key) {

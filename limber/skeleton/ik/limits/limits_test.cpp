@@ -50,7 +50,7 @@ JointLimit tilted(const JointMotion& motion, RandomValues& random) {
   return limit;
 }
 
-// Swing (x, z) and twist of a rotation, the way the header defines them, from Eigen's own pieces.
+// Swing (x, z) and twist of a rotation, as the header defines them, from Eigen's own parts.
 struct Parts {
   Vec3 bone;
   double swingX, swingZ, twist;

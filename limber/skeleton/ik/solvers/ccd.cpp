@@ -106,7 +106,7 @@ class CcdIteration : public IkIteration {
       if (!(from.squaredNorm() > 0 && to.squaredNorm() > 0)) return;
       const double fraction = fractions_[static_cast<std::size_t>(node)];
       Quat turned = shortestRotation(from, to);
-      if (fraction < 1) {  // about this share of its angle: exact enough, and much cheaper than slerp
+      if (fraction < 1) {  // about this fraction of its angle: exact enough, and much cheaper than slerp
         turned.coeffs() *= fraction;
         turned.w() += 1 - fraction;
         turned.coeffs() /= std::sqrt(turned.squaredNorm());

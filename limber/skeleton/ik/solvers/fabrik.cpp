@@ -33,8 +33,8 @@ inline Vec3 pulled(const Vec3& joint, const Vec3& fixed, const FabrikBone& bone)
   return fixed + line * (bone.length / std::sqrt(squared));
 }
 
-// Each iteration leaves about the same share of what was left to go. So the tip is pulled beyond its target, as far as
-// the next iteration should leave: of 1 + aim times the way a share (1 + aim) * (1 - stays) is gone.
+// Each iteration leaves about the same fraction r of the distance left. So the tip is pulled beyond its target, by the
+// distance that the next iteration should leave: of the distance left, (1 + aim) * (1 - r) is then covered.
 double nextAim(double aim, const Vec3& before, const Vec3& left) {
   const double gone = 1 - left.dot(before) / before.squaredNorm();
   return gone > 0 ? std::clamp((1 + aim) / gone - 1, 0.0, kFurthestAim) : 0;

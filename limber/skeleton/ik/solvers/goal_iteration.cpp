@@ -50,9 +50,9 @@ Index GoalIteration::run(IkSystem& system, Index budget) {
   return done;
 }
 
-// A single limb is left to the joints' goals for its first iterations, which mostly do. Where limbs share joints at
-// their limits, the goals mislead more than they help: with every other iteration by them 74 of 100 humanoids were
-// solved, with every eighth 97.
+// A single limb is left to the joints' goals for its first iterations, which mostly suffice. Where limbs have joints in
+// common that are at their limits, the goals mislead more than they help: with every other iteration by them 74 of 100
+// humanoids were solved, with every eighth 97.
 bool GoalIteration::isTurnOfEffectors(Index done) const {
   return heed_.size() > 1 ? done % 8 != 0 : done >= kGoalPatience && done % 2 == 1;
 }

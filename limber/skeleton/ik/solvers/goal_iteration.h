@@ -17,7 +17,7 @@ class GoalIteration : public IkIteration {
   Index run(IkSystem& system, Index budget) final;
 
  protected:
-  // Fills goals_ and weights_ for the system as it stands.
+  // Fills goals_ and weights_ for the system's current state.
   virtual void setGoals(const IkSystem& system) = 0;
 
   std::vector<Vec3> goals_;      // #nodes

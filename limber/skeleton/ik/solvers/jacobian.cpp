@@ -11,7 +11,7 @@ namespace limber {
 
 namespace {
 
-// A slide as long as this share of the longest limb costs a step as much as a radian.
+// A slide as long as this fraction of the longest limb costs a step as much as a radian.
 constexpr double kSlideFraction = 0.3;
 
 }  // namespace

@@ -13,8 +13,8 @@ namespace limber {
 
 // Rows: for each effector the 3 coordinates of its position, then, where it has an orientation, the 3 of its rotation
 // times its angleScale; all times the root of its weight. Ordered by priority. For a system with tasks, their rows
-// (IkTaskRows) in place of those. Columns: for each node the axes about which it may turn, in radians, then along which
-// it may slide, in units of slideLength(); times its gain.
+// (IkTaskRows) instead. Columns: for each node the axes about which it may turn, in radians, then along which it may
+// slide, in units of slideLength(); times its gain.
 class IkJacobian {
  public:
   struct Freedom {

@@ -18,7 +18,7 @@ constexpr double kEnough = 0.1;               // of what a step promises to firs
 constexpr Index kJacobianPatience = 10;       // iterations after which there must have been
 constexpr double kJacobianProgress = 0.9995;  // this factor on the cost
 constexpr int kStepBits = 28;                 // of a step that count, so that rounding does not tell left from right
-constexpr double kSettled = 1e-5;             // change of the distance to the reference pose, as a share
+constexpr double kSettled = 1e-5;             // fractional change of the distance to the reference pose
 
 }  // namespace
 

@@ -1,5 +1,5 @@
-// What all Jacobian methods share: build the Jacobian, take the method's step level by level of priority, let joints at
-// their limits stand, approach the reference pose in the null space, and keep only steps that gain.
+// What all Jacobian methods have in common: build the Jacobian, take the method's step level by level of priority, fix
+// joints at their limits, approach the reference pose in the null space, and keep only steps that gain.
 #pragma once
 
 #include <vector>

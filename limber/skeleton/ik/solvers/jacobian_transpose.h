@@ -1,4 +1,4 @@
-// The Jacobian's transpose in place of its inverse.
+// The Jacobian's transpose instead of its inverse.
 #pragma once
 
 #include <memory>

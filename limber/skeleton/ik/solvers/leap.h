@@ -5,10 +5,10 @@
 
 namespace limber {
 
-// For sweeps over the joints (CCD, FABRIK), which zigzag where limbs share joints, where limits hold and where a chain
-// is all but straight. After a sweep every joint goes on by the turn it has just made, times a factor that doubles with
-// each success and halves otherwise (pattern moves; Hooke, Jeeves: Direct search solution of numerical and statistical
-// problems, 1961). Takes no memory after construction. Cost: a few sweeps' forward passes.
+// For sweeps over the joints (CCD, FABRIK), which zigzag where limbs have joints in common, where limits apply and
+// where a chain is almost straight. After a sweep every joint goes on by the rotation it has just made, times a factor
+// that doubles with each success and halves otherwise (pattern moves; Hooke, Jeeves: Direct search solution of
+// numerical and statistical problems, 1961). Takes no memory after construction. Cost: a few sweeps' forward passes.
 class Leap {
  public:
   explicit Leap(const IkSystem& system) : before_(system.makeState()), after_(before_) {}

@@ -12,7 +12,8 @@ constexpr int kLimbSweeps = 8;
 // of 30 joints take 763 iterations to a millionth, so 12.
 constexpr double kAhead = 0.8;
 
-// Moves two particles along their line to the distance `length`; `share` of it the first, the rest the second.
+// Moves two particles along their line to the distance `length`; the first by `fraction` of the gap, the second by the
+// rest.
 void keepLength(Vec3& a, Vec3& b, double length, double fraction) {
   const Vec3 line = b - a;
   const double distance = line.norm();

@@ -11,7 +11,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kNegligible = 1e-6;  // squared singular values below this share of the largest are taken for 0
+constexpr double kNegligible = 1e-6;  // squared singular values below this fraction of the largest are taken for 0
 constexpr double kMaxStep = kPi / 4;  // radians, of all joints together, along one singular vector
 
 class PseudoInverse : public JacobianIteration {

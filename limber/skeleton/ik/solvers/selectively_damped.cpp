@@ -66,7 +66,7 @@ class SelectivelyDamped : public JacobianIteration {
     const Eigen::Index blocks = error.size() / 3, columns = rows.jacobian.cols();
     double moves = 0;  // N_i: how far the effectors go for a unit along u
     for (Eigen::Index b = 0; b < blocks; ++b) moves += u.segment<3>(3 * b).norm();
-    double couldMove = 0;  // M_i: how far they would if all joints moved them the same way
+    double couldMove = 0;  // M_i: how far they would if all joints moved them in the same direction
     double largest = 0;
     for (Eigen::Index c = 0; c < columns; ++c) {
       const double v = std::abs(rows.jacobian.col(c).dot(u)) / sigma;

@@ -66,7 +66,7 @@ Bend bendFor(const TwoBone& bones) {
   bend.along = d > 0 ? std::clamp((squares + d * d) / (2 * d), -upperLength, upperLength) : 0;
   bend.out = std::sqrt(std::max(0.0, upperLength * upperLength - bend.along * bend.along));
 
-  // The normal of the new bend: carried along with the way to the target, or across to the pole.
+  // The normal of the new bend: carried along with the direction to the target, or across to the pole.
   bend.newNormal = carriedNormal(bend.normal, nowDirection, bend.direction);
   if (bones.pole) {
     const Vec3 across = (*bones.pole - bones.start).cross(bend.direction);

@@ -34,8 +34,8 @@ struct TwoBonePositions {
 TwoBonePositions twoBonePositions(const TwoBone& bones);
 
 // The method: each target moves its joint, its parent and its grandparent (the base; the default base is the
-// grandparent's root, so name it). Orientations turn the effector's own joint. Refuses effectors that share joints or
-// have not exactly two bones.
+// grandparent's root, so name it). Orientations turn the effector's own joint. Refuses effectors that have joints in
+// common or have not exactly two bones.
 std::unique_ptr<IkIteration> makeTwoBone(const IkSystem& system);
 
 }  // namespace limber

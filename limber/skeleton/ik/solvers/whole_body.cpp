@@ -10,7 +10,7 @@ namespace {
 constexpr double kBodyDampingFraction = 0.05;  // damping, of the squared distance left to go
 constexpr double kWillingness = 0.3;           // of a joint that carries everything, against one that carries nothing
 
-// A node's freedom, less for one that carries more: its share of the length of all bones.
+// A node's freedom, reduced by the load it carries: the fraction of the length of all bones.
 std::vector<double> gainsByLoad(const IkSystem& system) {
   std::vector<double> carried(system.nodes.size(), 0.0);
   double total = 0;

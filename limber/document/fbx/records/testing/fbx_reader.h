@@ -1,4 +1,5 @@
-// A reader of binary FBX 7.4 that shares nothing with the library: by the letter of the format, arrays by zlib.
+// A reader of binary FBX 7.4 that has no code in common with the library: it follows the format's description, with
+// zlib for arrays.
 #pragma once
 
 #include <cstring>
