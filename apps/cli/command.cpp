@@ -24,10 +24,10 @@ bool isSameLocation(const std::string& a, const std::string& b) {
   if (a == "-" || b == "-") return false;
   std::error_code unseen;  // of files that are not there
   if (std::filesystem::equivalent(a, b, unseen)) return true;
-  const auto positionOf = [&](const std::string& path) {
+  const auto locationOf = [&](const std::string& path) {
     return std::filesystem::weakly_canonical(std::filesystem::absolute(path, unseen), unseen);
   };
-  return positionOf(a) == positionOf(b);
+  return locationOf(a) == locationOf(b);
 }
 
 Warnings& allGiven() {
