@@ -181,11 +181,6 @@ Bytes encodeUsdz(const UsdFiles& files) {
   return writeStoredArchive(stored, kAlignment);
 }
 
-bool isUsdFormat(const std::filesystem::path& path) {
-  const std::string extension = lowerExtension(path);
-  return extension == ".usda" || extension == ".usdc" || extension == ".usdz";
-}
-
 Warnings writeUsd(const Asset& asset, const std::filesystem::path& path, UsdOptions options,
                   std::span<const OutputFile> companions) {
   std::vector<OutputFile> outputs(companions.begin(), companions.end());

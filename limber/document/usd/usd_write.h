@@ -52,9 +52,6 @@ UsdFiles stillUsdFiles(const Asset& asset, const UsdStillSurface& surface);
 // The same in one file: a stored ZIP archive with every file at a multiple of 64 bytes (USDZ 1.3).
 Bytes encodeUsdz(const UsdFiles& files);
 
-// Does writeUsd know that extension (".usda", ".usdc", ".usdz", in any case)?
-bool isUsdFormat(const std::filesystem::path& path);
-
 // A .usdz, or a .usda or .usdc with its images beside, called after it: all files or none, `companions` (a report)
 // among them. Throws Error kFile.
 Warnings writeUsd(const Asset& asset, const std::filesystem::path& path, UsdOptions options = {},

@@ -334,13 +334,6 @@ TEST(EncodeUsdz, FilesLieAtMultiplesOf64AndComeBack) {
   EXPECT_EQ(encodeUsdz(files), archive);
 }
 
-TEST(IsUsdFormat, GoesByTheExtension) {
-  EXPECT_TRUE(isUsdFormat("a/b.USDZ"));
-  EXPECT_TRUE(isUsdFormat("b.usda"));
-  EXPECT_TRUE(isUsdFormat("b.usdc"));
-  EXPECT_FALSE(isUsdFormat("b.glb"));
-}
-
 // Of all meshes of the text, one after the other.
 std::vector<double> pointsOf(const std::string& text) {
   std::vector<double> points;

@@ -113,15 +113,6 @@ void SignedDistance::refine(const Bvh& surface, const WindingNumber& winding) {
   }
 }
 
-Vec3 SignedDistance::gradientAt(const Vec3& point) const {
-  Vec3 gradient;
-  for (int axis = 0; axis < 3; ++axis) {
-    const Vec3 step = spacing_ * Vec3::Unit(axis);
-    gradient[axis] = (at(point + step) - at(point - step)) / (2 * spacing_);
-  }
-  return gradient;
-}
-
 Index cellsForNodes(const TriMesh& mesh, double nodes, double least, double most) {
   const Box box = modelBox(mesh);
   const Vec3 sides = box.size() / std::max(box.longestSide(), 1e-12);

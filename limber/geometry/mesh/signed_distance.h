@@ -41,8 +41,6 @@ class SignedDistance {
   // one. Beyond the grid it is the value at the grid's border.
   template <std::size_t N>
   std::array<float, N> atEach(const std::array<std::array<float, N>, 3>& positions) const;
-  // Of at(), by central differences of one spacing.
-  Vec3 gradientAt(const Vec3& point) const;
 
  private:
   void refine(const Bvh& surface, const WindingNumber& winding);

@@ -32,7 +32,6 @@ TEST(SignedDistance, OfASphere) {
   }
   const Vec3 out = Vec3(1, 2, 2) / 3;
   EXPECT_NEAR(distance.at(center + 0.45 * out), -0.05, 0.006);
-  EXPECT_LT((distance.gradientAt(center + 0.48 * out) - out).norm(), 0.05);
   EXPECT_NEAR(distance.at(center + 10 * out), 9.5, 0.5);
 }
 

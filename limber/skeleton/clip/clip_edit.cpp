@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include "limber/core/error.h"
-#include "limber/skeleton/clip/keep_duration.h"
 #include "limber/skeleton/motion.h"
 
 namespace limber {
@@ -15,10 +14,6 @@ namespace {
 
 constexpr double kCutCurveRate = 120;  // keys a second of a curve that becomes lines
 
-template <typename Value>
-auto stored(const Value& value) {
-  return value;
-}
 Vec3f stored(const Vec3& value) {
   return value.cast<float>();
 }
@@ -32,22 +27,6 @@ void keepNearSide(std::vector<Eigen::Quaternionf>& values) {
   for (std::size_t k = 1; k < values.size(); ++k) {
     if (values[k].coeffs().dot(values[k - 1].coeffs()) < 0) values[k].coeffs() *= -1;
   }
-}
-
-bool same(const Vec3f& a, const Vec3f& b) {
-  return a == b;
-}
-bool same(const Eigen::Quaternionf& a, const Eigen::Quaternionf& b) {
-  return a.coeffs() == b.coeffs();
-}
-
-template <typename Value>
-void collapse(Track<Value>& track) {
-  const bool constant = std::all_of(track.values.begin(), track.values.end(),
-                                    [&](const Value& value) { return same(value, track.values.front()); });
-  if (!constant || track.interpolation == Interpolation::kCubic) return;
-  track.times.resize(1);
-  track.values.resize(1);
 }
 
 std::vector<float> frameTimes(double duration, double rate, Index frames) {
@@ -161,45 +140,6 @@ Clip changed(const Clip& clip, const Change& change) {
   return result;
 }
 
-// A clip whose frames are poses: a track for every part that some pose has off the rest pose.
-Clip clipOfPoses(const Skeleton& skeleton, const std::vector<Pose>& poses, const std::vector<float>& times) {
-  Clip clip;
-  for (Index j = 0; j < skeleton.jointCount(); ++j) {
-    Track<Vec3f> translation, scale;
-    Track<Eigen::Quaternionf> rotation;
-    translation.joint = scale.joint = rotation.joint = j;
-    translation.times = scale.times = rotation.times = times;
-    for (const Pose& pose : poses) {
-      translation.values.push_back(stored(pose.locals[j].translation));
-      rotation.values.push_back(stored(pose.locals[j].rotation));
-      scale.values.push_back(stored(pose.locals[j].scale));
-    }
-    keepNearSide(rotation.values);
-    const Transform& rest = skeleton.joints[j].rest;
-    const auto add = [](auto& tracks, auto& track, const auto& standing) {
-      collapse(track);
-      if (track.values.size() > 1 || !same(track.values[0], standing)) tracks.push_back(std::move(track));
-    };
-    add(clip.translations, translation, stored(rest.translation));
-    add(clip.rotations, rotation, stored(rest.rotation));
-    add(clip.scales, scale, stored(rest.scale));
-  }
-  keepDuration(clip, times);
-  return clip;
-}
-
-Pose poseAt(const Skeleton& skeleton, const Clip& clip, double seconds) {
-  Pose pose = restPose(skeleton);
-  sampleClip(clip, seconds, pose);
-  return pose;
-}
-
-Index framesOf(double duration, double rate) {
-  Clip clip;
-  clip.translations.push_back({0, Interpolation::kLinear, {static_cast<float>(duration)}, {Vec3f::Zero()}});
-  return frameCount(clip, rate);
-}
-
 }  // namespace
 
 Clip resampleClip(const Clip& clip, double framesPerSecond) {
@@ -267,37 +207,6 @@ Pose blendPoses(const Pose& a, const Pose& b, double weight) {
     local.scale += weight * (b.locals[j].scale - local.scale);
   }
   return result;
-}
-
-Clip blendClips(const Skeleton& skeleton, const Clip& a, const Clip& b, double weight, double framesPerSecond) {
-  const double duration = (1 - weight) * a.duration() + weight * b.duration();
-  const std::vector<float> times = frameTimes(duration, framesPerSecond, framesOf(duration, framesPerSecond));
-  std::vector<Pose> poses;
-  for (const float time : times) {
-    const double u = duration > 0 ? time / duration : 0;
-    poses.push_back(blendPoses(poseAt(skeleton, a, u * a.duration()), poseAt(skeleton, b, u * b.duration()), weight));
-  }
-  Clip clip = clipOfPoses(skeleton, poses, times);
-  clip.name = a.name;
-  return clip;
-}
-
-Clip crossfadeClips(const Skeleton& skeleton, const Clip& a, const Clip& b, double overlap, double framesPerSecond) {
-  if (!(overlap >= 0) || overlap > a.duration() || overlap > b.duration()) {
-    throw Error(ErrorCode::kBadArgument,
-                fmt::format("clips of {:g} and {:g} s cannot overlap by {:g} s", a.duration(), b.duration(), overlap));
-  }
-  const double start = a.duration() - overlap, duration = start + b.duration();
-  const std::vector<float> times = frameTimes(duration, framesPerSecond, framesOf(duration, framesPerSecond));
-  std::vector<Pose> poses;
-  for (const float time : times) {
-    const double u = overlap > 0 ? std::clamp((time - start) / overlap, 0.0, 1.0) : (time < start ? 0.0 : 1.0);
-    poses.push_back(
-        blendPoses(poseAt(skeleton, a, time), poseAt(skeleton, b, std::max(0.0, time - start)), u * u * (3 - 2 * u)));
-  }
-  Clip clip = clipOfPoses(skeleton, poses, times);
-  clip.name = a.name;
-  return clip;
 }
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Clips cut, sampled anew, mixed and made to loop. Clips that go in have passed checkClip for the skeleton.
+// Clips cut, sampled anew and made to loop. Clips that go in have passed checkClip for the skeleton.
 #pragma once
 
 #include "limber/skeleton/clip/clip.h"
@@ -25,15 +25,6 @@ Clip turnClip(Clip clip, const Skeleton& skeleton, const Quat& turn);
 // A pose between two: translations and scales linearly, rotations along the shortest path. weight 0 is a, 1 is b.
 // Equal sizes.
 Pose blendPoses(const Pose& a, const Pose& b, double weight);
-
-// A mix of two clips over one skeleton: `weight` 0 is a, 1 is b. The result lasts the mix of their durations, and both
-// are stretched to it, so that a walk and a run that each hold one stride stay in step. Keys at the given rate.
-Clip blendClips(const Skeleton& skeleton, const Clip& a, const Clip& b, double weight, double framesPerSecond);
-
-// First a, then b, which fades in over the last `overlap` seconds of a (smoothly: 3u^2 - 2u^3). The result lasts as
-// long as both together less the overlap. Roots stay where each clip has them. Throws Error kBadArgument where the
-// overlap is negative or longer than one of the clips.
-Clip crossfadeClips(const Skeleton& skeleton, const Clip& a, const Clip& b, double overlap, double framesPerSecond);
 
 // A stretch of a clip that can be repeated.
 struct ClipLoop {

@@ -168,45 +168,6 @@ TEST(ClipEdit, TurningTakesAllJointsAlong) {
   }
 }
 
-TEST(ClipEdit, BlendingGoesFromOneToTheOther) {
-  const Skeleton skeleton = chain(3);
-  const Clip a = randomClip(skeleton, 6, Interpolation::kLinear);
-  Clip b = randomClip(skeleton, 7, Interpolation::kLinear);
-  for (auto& track : b.rotations) {
-    for (float& time : track.times) time *= 2;
-  }
-  for (auto& track : b.translations) track.times = b.rotations[0].times;
-  const Clip onlyA = blendClips(skeleton, a, b, 0, 10), onlyB = blendClips(skeleton, a, b, 1, 5);
-  const Clip half = blendClips(skeleton, a, b, 0.5, 20);
-  EXPECT_NEAR(onlyA.duration(), 1, 1e-6);
-  EXPECT_NEAR(onlyB.duration(), 2, 1e-6);
-  EXPECT_NEAR(half.duration(), 1.5, 1e-6);
-  for (int k = 0; k <= 10; ++k) {
-    EXPECT_LT(difference(skeleton, a, 0.1 * k, onlyA, 0.1 * k), 1e-4);
-    EXPECT_LT(difference(skeleton, b, 0.2 * k, onlyB, 0.2 * k), 1e-4);
-    // Halfway between two rotations both are equally far.
-    Pose x = restPose(skeleton), y = restPose(skeleton), z = restPose(skeleton);
-    sampleClip(a, 0.1 * k, x);
-    sampleClip(b, 0.2 * k, y);
-    sampleClip(half, 0.15 * k, z);
-    for (std::size_t j = 0; j < 3; ++j) {
-      EXPECT_NEAR(z.locals[j].rotation.angularDistance(x.locals[j].rotation),
-                  z.locals[j].rotation.angularDistance(y.locals[j].rotation), 1e-3);
-    }
-  }
-}
-
-TEST(ClipEdit, CrossfadingStartsAsOneAndEndsAsTheOther) {
-  const Skeleton skeleton = chain(3);
-  const Clip a = randomClip(skeleton, 8, Interpolation::kLinear), b = randomClip(skeleton, 9, Interpolation::kLinear);
-  const Clip both = crossfadeClips(skeleton, a, b, 0.4, 10);
-  EXPECT_NEAR(both.duration(), 1.6, 1e-6);
-  for (int k = 0; k <= 6; ++k) EXPECT_LT(difference(skeleton, a, 0.1 * k, both, 0.1 * k), 1e-4);
-  for (int k = 10; k <= 16; ++k) EXPECT_LT(difference(skeleton, b, 0.1 * k - 0.6, both, 0.1 * k), 1e-4);
-  EXPECT_THROW(crossfadeClips(skeleton, a, b, 1.1, 10), Error);
-  EXPECT_THROW(crossfadeClips(skeleton, a, b, -0.1, 10), Error);
-}
-
 // A pendulum that swings twice a second, on a root that walks away and turns.
 Clip swinging(double seconds) {
   Clip clip;

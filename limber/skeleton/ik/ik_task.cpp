@@ -1,7 +1,7 @@
 #include "limber/skeleton/ik/ik_task.h"
 
-#include <array>
 #include <cmath>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -12,9 +12,6 @@
 namespace limber {
 
 namespace {
-
-constexpr std::array<std::string_view, std::variant_size_v<IkTaskGoal>> kTaskNames = {
-    "position", "orientation", "look-at", "distance", "plane", "balance", "keep-out", "coupling"};
 
 constexpr double kNearby = 0.1;         // fraction of the rotation to a random one, for another attempt
 constexpr double kClearlyBetter = 0.9;  // of the cost: what another posture is taken for
@@ -198,10 +195,6 @@ IkTaskObstacle obstacleOf(const Skeleton& skeleton, const Pose& start, const IkT
 }
 
 }  // namespace
-
-std::span<const std::string_view> ikTaskNames() {
-  return kTaskNames;
-}
 
 bool IkTaskResult::met() const {
   for (const IkTaskReport& task : tasks) {

@@ -3,7 +3,6 @@
 
 #include <optional>
 #include <span>
-#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -56,9 +55,6 @@ struct CouplingTask {  // the joint's turn from its rest pose is `ratio` of the 
 
 using IkTaskGoal = std::variant<PositionTask, OrientationTask, LookAtTask, DistanceTask, PlaneTask, BalanceTask,
                                 KeepOutTask, CouplingTask>;
-
-// "look-at", ... in the order of IkTaskGoal.
-std::span<const std::string_view> ikTaskNames();
 
 struct IkTask {
   IkTaskGoal goal;
