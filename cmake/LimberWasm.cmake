@@ -15,6 +15,7 @@ endfunction()
 limber_system_headers(fmt::fmt fmt)
 target_compile_definitions(fmt::fmt INTERFACE FMT_HEADER_ONLY=1)
 limber_system_headers(nlohmann_json::nlohmann_json nlohmann)
+limber_system_headers(FastFloat::fast_float fast_float)
 find_path(eigen_folder Eigen/Core PATHS /usr/include/eigen3 /usr/local/include/eigen3 NO_DEFAULT_PATH
   NO_CMAKE_FIND_ROOT_PATH REQUIRED)
 add_library(Eigen3::Eigen INTERFACE IMPORTED GLOBAL)

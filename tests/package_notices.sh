@@ -20,10 +20,10 @@ told() {
 
 # Who holds the rights, and a line of the licence itself.
 eigen=("Gael Guennebaud" "Mozilla Public License Version 2.0") json=("Niels Lohmann" "Permission is hereby granted, free of charge")
-fmt=("Victor Zverovich") cli=("University of Cincinnati" "Redistribution and use in source and binary forms")
-engine=("${eigen[@]}" "${json[@]}" "${fmt[@]}" "Rich Felker" "LLVM Exceptions")
+fmt=("Victor Zverovich") fast_float=("Antoine Pitrou") cli=("University of Cincinnati" "Redistribution and use in source and binary forms")
+engine=("${eigen[@]}" "${json[@]}" "${fmt[@]}" "${fast_float[@]}" "Rich Felker" "LLVM Exceptions")
 page=("three.js authors" "Arjun Barrett" "Juan Mellado" "Arseny Kapoulkine" "Google Inc" "Yuji Hirose" "Kentaro Fukuchi" "${engine[@]}")
-library=("${eigen[@]}" "${json[@]}" "${fmt[@]}")
+library=("${eigen[@]}" "${json[@]}" "${fmt[@]}" "${fast_float[@]}")
 program=("${library[@]}" "${cli[@]}")
 ! grep -q '^LIMBER_STUDIO:BOOL=ON' "$build/CMakeCache.txt" || program+=("${page[@]}")
 python=("${program[@]}" "Wenzel Jakob")

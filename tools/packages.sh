@@ -1,11 +1,11 @@
 # What each command of ./dev needs from the system, and how it gets there. Sourced by ./dev.
 
-packages_release=(cmake ninja-build g++ libeigen3-dev libcli11-dev libfmt-dev nlohmann-json3-dev libassimp-dev
+packages_release=(cmake ninja-build g++ libeigen3-dev libfast-float-dev libcli11-dev libfmt-dev nlohmann-json3-dev libassimp-dev
   libmeshoptimizer-dev libdraco-dev libpng-dev libjpeg-dev libtbb-dev libssl-dev pkg-config)
 packages_tests=("${packages_release[@]}" libgtest-dev libgmock-dev libembree-dev zlib1g-dev)
 packages_bench=("${packages_tests[@]}" libbenchmark-dev nodejs)
 packages_sanitize=("${packages_tests[@]}" clang libclang-rt-14-dev lld)
-packages_wasm=(cmake ninja-build libeigen3-dev libfmt-dev nlohmann-json3-dev emscripten nodejs zstd)
+packages_wasm=(cmake ninja-build libeigen3-dev libfast-float-dev libfmt-dev nlohmann-json3-dev emscripten nodejs zstd)
 packages_node=(nodejs npm)
 packages_studio=(libcpp-httplib-dev libqrencode-dev) # for the page in the program
 packages_python=(pybind11-dev python3-dev python3-numpy)

@@ -6,6 +6,7 @@
 
 #include "command.h"
 #include "limber/core/text/parse_number.h"
+#include "limber/core/text/split_text.h"
 
 namespace limber::cli {
 
@@ -23,14 +24,10 @@ constexpr double kMaxSteps = 101;
 // "0.4", or "0:1:5": so many from the first to the last.
 std::vector<double> weightsOf(const std::string& text) {
   std::vector<double> numbers;
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  while (true) {
-    const std::optional<double> number = parseNumber(at, end);
-    if (!number || !std::isfinite(*number)) refuseBlend(text);
+  for (const std::string_view word : splitAt(text, ':')) {
+    const std::optional<double> number = finiteNumber(word);
+    if (!number) refuseBlend(text);
     numbers.push_back(*number);
-    if (at == end) break;
-    if (*at++ != ':') refuseBlend(text);
   }
   const auto isWeight = [](double number) { return number >= 0 && number <= 1; };
   if (numbers.size() == 1 && isWeight(numbers[0])) return numbers;

@@ -13,6 +13,7 @@
 #include "limber/character/anatomy/skeleton_size.h"
 #include "limber/core/counted.h"
 #include "limber/core/text/names.h"
+#include "limber/core/text/parse_number.h"
 #include "limber/document/bvh/bvh_write.h"
 #include "limber/document/clip/clip_io.h"
 #include "limber/document/clip/motion_io.h"
@@ -57,9 +58,7 @@ double metresOf(const std::string& unit) {
   for (const auto& [name, metres] : kUnits) {
     if (unit == name) return metres;
   }
-  char* end = nullptr;
-  const double metres = std::strtod(unit.c_str(), &end);
-  if (!unit.empty() && *end == 0 && metres > 0 && std::isfinite(metres)) return metres;
+  if (const std::optional<double> metres = finiteNumber(unit); metres && *metres > 0) return *metres;
   throw Error(ErrorCode::kBadArgument, "\"" + unit + "\" is no unit of length", "",
               "use m, dm, cm, mm, in, ft, cmu, or how many metres it has");
 }
@@ -78,10 +77,7 @@ bool isBvh(const std::string& path) {
 TimeSpan trimSpan(const std::string& text) {
   const std::size_t colon = text.find(':');
   const auto part = [&](const std::string& number, double otherwise) {
-    if (number.empty()) return otherwise;
-    char* end = nullptr;
-    const double value = std::strtod(number.c_str(), &end);
-    return *end == 0 ? value : std::nan("");
+    return number.empty() ? otherwise : finiteNumber(number).value_or(std::nan(""));
   };
   TimeSpan span{std::nan(""), std::nan("")};
   if (colon != std::string::npos) {

@@ -8,6 +8,7 @@
 #include "limber/character/anatomy/names/humanoid_joints.h"
 #include "limber/core/error.h"
 #include "limber/core/text/parse_number.h"
+#include "limber/core/text/split_text.h"
 
 namespace limber {
 
@@ -25,27 +26,10 @@ void failText(std::string_view text, std::string message, std::string remedy) {
   throw Error(ErrorCode::kBadArgument, std::move(message), inQuotes(text), std::move(remedy));
 }
 
-std::optional<double> numberOf(std::string_view word) {
-  const char* at = word.data();
-  const char* const end = at + word.size();
-  const std::optional<double> value = parseNumber(at, end);
-  return value && at == end && std::isfinite(*value) ? value : std::nullopt;
-}
-
-std::vector<std::string_view> splitAt(char separator, std::string_view text) {
-  std::vector<std::string_view> words;
-  while (true) {
-    const std::size_t end = text.find(separator);
-    words.push_back(text.substr(0, end));
-    if (end == std::string_view::npos) return words;
-    text.remove_prefix(end + 1);
-  }
-}
-
 std::vector<double> numbersOf(std::string_view text, std::size_t count) {
   std::vector<double> numbers;
-  for (const std::string_view word : splitAt(',', text)) {
-    const std::optional<double> number = numberOf(word);
+  for (const std::string_view word : splitAt(text, ',')) {
+    const std::optional<double> number = finiteNumber(word);
     if (!number) return {};
     numbers.push_back(*number);
   }

@@ -14,9 +14,6 @@ std::string inQuotes(std::string_view text);
 // Throws Error kBadArgument at the text.
 [[noreturn]] void failText(std::string_view text, std::string message, std::string remedy);
 
-// The whole of `word` as a finite number.
-std::optional<double> numberOf(std::string_view word);
-std::vector<std::string_view> splitAt(char separator, std::string_view text);
 // "1,2,3": exactly `count` numbers, else empty.
 std::vector<double> numbersOf(std::string_view text, std::size_t count);
 

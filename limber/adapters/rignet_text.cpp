@@ -45,7 +45,7 @@ class RignetReader {
   RignetRig read(std::string_view text) {
     for (const std::string_view line : splitAt(text, '\n')) {
       ++line_;
-      readLine(wordsOf(line));
+      readLine(wordsIn(line, " \t\r"));
     }
     if (joints_.empty()) fail("has no joint");
     for (const Link& link : links_) connect(link);
@@ -60,22 +60,9 @@ class RignetReader {
     throw Error(ErrorCode::kBadData, message, line > 0 ? fmt::format("{}: line {}", name_, line) : std::string(name_));
   }
 
-  static std::vector<std::string_view> wordsOf(std::string_view line) {
-    std::vector<std::string_view> words;
-    constexpr std::string_view kBlank = " \t\r";
-    for (std::size_t at = line.find_first_not_of(kBlank); at != std::string_view::npos;) {
-      const std::size_t end = std::min(line.find_first_of(kBlank, at), line.size());
-      words.push_back(line.substr(at, end - at));
-      at = line.find_first_not_of(kBlank, end);
-    }
-    return words;
-  }
-
   double numberOf(std::string_view word, std::size_t line) const {
-    const char* at = word.data();
-    const char* const end = at + word.size();
-    const auto number = parseNumber(at, end);
-    if (!number || at != end || !std::isfinite(*number)) fail(fmt::format("'{}' is no number", shown(word)), line);
+    const std::optional<double> number = finiteNumber(word);
+    if (!number) fail(fmt::format("'{}' is no number", shown(word)), line);
     return *number;
   }
 

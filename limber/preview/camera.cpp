@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include "limber/core/error.h"
+#include "limber/core/text/parse_number.h"
 
 namespace limber {
 
@@ -26,13 +26,6 @@ constexpr std::array<std::pair<std::string_view, ViewDirection>, 5> kViews = {{
     {"back", {180, 6}},
     {"top", {0, 90}},
 }};
-
-std::optional<double> parseNumber(const std::string& text) {
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  if (text.empty() || *end != '\0' || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
 
 Mat3 viewAxes(const ViewDirection& direction) {
   const double azimuth = direction.azimuth * kDegree, elevation = direction.elevation * kDegree;
@@ -54,8 +47,8 @@ ViewDirection parseView(std::string_view text) {
   }
   const std::size_t comma = text.find(',');
   if (comma != std::string_view::npos) {
-    const auto azimuth = parseNumber(std::string(text.substr(0, comma)));
-    const auto elevation = parseNumber(std::string(text.substr(comma + 1)));
+    const auto azimuth = finiteNumber(text.substr(0, comma));
+    const auto elevation = finiteNumber(text.substr(comma + 1));
     if (azimuth && elevation && std::abs(*elevation) <= 90) return {*azimuth, *elevation};
   }
   throw Error(ErrorCode::kBadArgument, "there is no view \"" + std::string(text) + "\"", "",

@@ -13,6 +13,8 @@
 #include "limber/actions/edit_text.h"
 #include "limber/core/error.h"
 #include "limber/core/text/numbers.h"
+#include "limber/core/text/parse_number.h"
+#include "limber/core/text/split_text.h"
 #include "limber/document/gltf/json_access.h"
 #include "limber/document/gltf/json_text.h"
 
@@ -45,9 +47,9 @@ JointReach& reachOf(std::string_view text, const std::string& joint, PoseEdits& 
 std::vector<JointTurn> parseTurn(std::string_view text) {
   const auto [joint, value] = splitAtEquals(text);
   std::vector<JointTurn> turns;
-  for (const std::string_view word : splitAt(',', value)) {
+  for (const std::string_view word : splitAt(value, ',')) {
     const bool axis = word.size() > 2 && word[0] >= 'x' && word[0] <= 'z' && word[1] == ':';
-    const std::optional<double> degrees = axis ? numberOf(word.substr(2)) : std::nullopt;
+    const std::optional<double> degrees = axis ? finiteNumber(word.substr(2)) : std::nullopt;
     if (!degrees) failText(text, "has no turn after the '='", "write joint=y:30, an axis and degrees");
     turns.push_back({joint, Vec3::Unit(word[0] - 'x'), *degrees, inQuotes(text)});
   }

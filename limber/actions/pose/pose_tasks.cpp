@@ -9,6 +9,8 @@
 #include "limber/core/error.h"
 #include "limber/core/text/names.h"
 #include "limber/core/text/numbers.h"
+#include "limber/core/text/parse_number.h"
+#include "limber/core/text/split_text.h"
 
 namespace limber {
 
@@ -60,10 +62,10 @@ class TaskText {
                fmt::format("write @weight=2,priority=1: a weight above 0, a whole priority from 0 (first) to {}",
                            kHighestPriority));
     };
-    for (const std::string_view word : splitAt(',', suffix)) {
+    for (const std::string_view word : splitAt(suffix, ',')) {
       const std::size_t equals = word.find('=');
       const std::optional<double> number =
-          equals == std::string_view::npos ? std::nullopt : numberOf(word.substr(equals + 1));
+          equals == std::string_view::npos ? std::nullopt : finiteNumber(word.substr(equals + 1));
       if (!number) refuse("has no number after the '@'");
       if (word.substr(0, equals) == "weight") {
         if (!(*number > 0)) refuse("has a weight that is not above 0");
@@ -90,7 +92,7 @@ class TaskText {
   std::string_view takeAmount(const char* what) {
     const std::size_t colon = value_.rfind(':');
     const std::optional<double> number =
-        colon == std::string_view::npos ? std::nullopt : numberOf(value_.substr(colon + 1));
+        colon == std::string_view::npos ? std::nullopt : finiteNumber(value_.substr(colon + 1));
     if (!number) fail(what);
     edit_.amount = *number;
     return value_.substr(0, colon);
@@ -134,7 +136,7 @@ class TaskText {
         if (value_ != "within" && value_ != "centred") fail("is neither within nor centred");
         edit_.exact = value_ == "centred";
         if (!edit_.joint.empty()) {
-          for (const std::string_view name : splitAt('+', edit_.joint)) edit_.supports.emplace_back(name);
+          for (const std::string_view name : splitAt(edit_.joint, '+')) edit_.supports.emplace_back(name);
         }
         edit_.joint.clear();
         break;
@@ -158,9 +160,9 @@ class TaskText {
   }
 
   void readTurn() {
-    for (const std::string_view word : splitAt(',', value_)) {
+    for (const std::string_view word : splitAt(value_, ',')) {
       const bool axis = word.size() > 2 && word[0] >= 'x' && word[0] <= 'z' && word[1] == ':';
-      const std::optional<double> degrees = axis ? numberOf(word.substr(2)) : std::nullopt;
+      const std::optional<double> degrees = axis ? finiteNumber(word.substr(2)) : std::nullopt;
       if (!degrees) fail("has no turn after the '='");
       edit_.turn = (Eigen::AngleAxisd(*degrees * kDegree, Vec3::Unit(word[0] - 'x')) * edit_.turn).normalized();
     }

@@ -1,4 +1,4 @@
-// Lines of a text, and cells of a line.
+// Lines of a text, cells and words of a line.
 #pragma once
 
 #include <algorithm>
@@ -16,6 +16,17 @@ inline std::vector<std::string_view> splitAt(std::string_view text, char separat
     begin = end + 1;
   }
   return parts;
+}
+
+// What is between blanks, which are any of these characters; no part is empty. They point into `text`.
+inline std::vector<std::string_view> wordsIn(std::string_view text, std::string_view blanks = " ") {
+  std::vector<std::string_view> words;
+  for (std::size_t begin = text.find_first_not_of(blanks); begin < text.size();) {
+    const std::size_t end = std::min(text.find_first_of(blanks, begin), text.size());
+    words.push_back(text.substr(begin, end - begin));
+    begin = text.find_first_not_of(blanks, end);
+  }
+  return words;
 }
 
 }  // namespace limber

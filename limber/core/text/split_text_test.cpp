@@ -14,5 +14,12 @@ TEST(SplitText, EmptyPartsCount) {
   EXPECT_THAT(splitAt("", ','), ElementsAre(""));
 }
 
+TEST(SplitText, WordsAreBetweenBlanks) {
+  EXPECT_THAT(wordsIn("  a bc  d"), ElementsAre("a", "bc", "d"));
+  EXPECT_THAT(wordsIn("a\tb c\r", " \t\r"), ElementsAre("a", "b", "c"));
+  EXPECT_TRUE(wordsIn("").empty());
+  EXPECT_TRUE(wordsIn("  ").empty());
+}
+
 }  // namespace
 }  // namespace limber

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "limber/core/text/parse_number.h"
 #include "limber/core/text/split_text.h"
 #include "limber/document/read.h"
 #include "limber/document/rig/rig_io.h"
@@ -58,13 +59,8 @@ std::vector<WeightTableRow> compareFolder(const std::filesystem::path& folder, c
 
 namespace {
 
-double parseNumber(std::string_view text, std::size_t line) {
-  try {
-    std::size_t used = 0;
-    const double value = std::stod(std::string(text), &used);
-    if (used == text.size() && std::isfinite(value)) return value;
-  } catch (const std::exception&) {  // said below
-  }
+double requireNumber(std::string_view text, std::size_t line) {
+  if (const std::optional<double> value = finiteNumber(text)) return *value;
   throw Error(ErrorCode::kBadData, fmt::format("'{}' is not a number", text), fmt::format("line {}", line));
 }
 
@@ -83,7 +79,7 @@ std::vector<WeightReference> parseWeightReferences(std::string_view text) {
                   fmt::format("line {}", i + 1));
     }
     if (!std::exchange(named, true)) continue;
-    const auto number = [&](std::size_t column) { return parseNumber(cells[column], i + 1); };
+    const auto number = [&](std::size_t column) { return requireNumber(cells[column], i + 1); };
     references.push_back(
         {std::string(cells[0]), cells[1] == "pieces", cells[2] == "heat", number(3), number(4), number(5), number(6)});
   }
