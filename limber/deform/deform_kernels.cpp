@@ -12,10 +12,6 @@ const DirectKernels& baselineDirectKernels() {
   return kDirectKernels;
 }
 
-const FullDirectKernels& baselineFullDirectKernels() {
-  return kFullDirectKernels;
-}
-
 const DirectKernels& directKernels() {
   static const DirectKernels* const avx512 = avx512DirectKernels();
   static const DirectKernels* const avx2 = avx2DirectKernels();

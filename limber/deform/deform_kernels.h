@@ -13,7 +13,7 @@ inline constexpr std::size_t kFloatsPerColumns = 16;
 // A unit dual quaternion: real x y z w, dual x y z w.
 inline constexpr std::size_t kFloatsPerMotion = 8;
 
-// Of four joints' first moments the x, then the y, z and weights; in full a joint's symmetric 4 x 4 matrix.
+// Of four joints' first moments the x, then the y, z and weights.
 inline constexpr std::size_t kFloatsPerMoments = 16;
 
 // Vertices are three floats, one after the other; `slots` joints and weights each.
@@ -30,16 +30,13 @@ struct DeformJob {
   const float* motions = nullptr;    // #J * kFloatsPerMotion
   const float* rotationCenters = nullptr;  // as positions
 
-  // Direct delta mush: the row of each vertex, the entries of each row (of four joints each; in full of one), and the
-  // smoothed position.
+  // Direct delta mush: the row of each vertex, the entries of each row (of four joints each), and the smoothed
+  // position.
   const std::uint32_t* rowOf = nullptr;      // #V
   const std::uint32_t* rowBegin = nullptr;   // #R + 1
-  const std::uint32_t* rowJoints = nullptr;  // #E * 4; in full #E
+  const std::uint32_t* rowJoints = nullptr;  // #E * 4
   const float* rowMoments = nullptr;         // #E * kFloatsPerMoments
   const float* rowPositions = nullptr;       // #R * 4
-  // In full only: the rotations alone, where columns are the maps; what the entries add to.
-  const float* turns = nullptr;     // #J * kFloatsPerColumns
-  const float* rowBases = nullptr;  // #R * kFloatsPerMoments
 };
 
 // Deforms the vertices begin <= v < end.
@@ -55,9 +52,6 @@ struct DeformKernels {
 struct DirectKernels {
   DeformKernel direct[2][2];  // [normals?][scales?]
 };
-struct FullDirectKernels {
-  DeformKernel direct[2][2];  // [normals?][scales?]
-};
 
 // Those for the machine that this runs on.
 const DeformKernels& deformKernels();
@@ -65,7 +59,6 @@ const DirectKernels& directKernels();
 
 const DeformKernels& baselineDeformKernels();
 const DirectKernels& baselineDirectKernels();
-const FullDirectKernels& baselineFullDirectKernels();
 // Null where the machine or the build has no AVX2.
 const DeformKernels* avx2DeformKernels();
 const DirectKernels* avx2DirectKernels();

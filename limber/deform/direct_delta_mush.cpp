@@ -15,41 +15,25 @@ namespace limber {
 
 namespace {
 
-// Of the surroundings' mean squared distance, as if they had it in every direction; with it R of a flat or straight
-// surface is known. Small against what a bend does to it.
-constexpr double kRoundness = 1e-3;
-// The same where all surroundings lie at one position, in squared longest sides.
-constexpr double kMinRoundness = 1e-12;
-
-// Moments of weighted points up to the second order.
+// Moments of weighted points up to the first order.
 struct PointMoments {
   double weight = 0;
   Vec3 first = Vec3::Zero();
-  Mat3 second = Mat3::Zero();
 
   PointMoments& operator+=(const PointMoments& other) {
     weight += other.weight;
     first += other.first;
-    second += other.second;
     return *this;
   }
-  bool isFinite() const { return std::isfinite(weight) && first.allFinite() && second.allFinite(); }
+  bool isFinite() const { return std::isfinite(weight) && first.allFinite(); }
 };
 
 PointMoments operator*(double factor, const PointMoments& m) {
-  return {factor * m.weight, factor * m.first, factor * m.second};
+  return {factor * m.weight, factor * m.first};
 }
 
 PointMoments operator-(const PointMoments& a, const PointMoments& b) {
-  return {a.weight - b.weight, a.first - b.first, a.second - b.second};
-}
-
-// About a point that lies at `offset` from the one they are about. Bit for bit symmetric as `m` is: where nothing
-// moves, nothing must seem to turn.
-PointMoments about(const PointMoments& m, const Vec3& offset) {
-  const Mat3 mixed = m.first * offset.transpose(), square = offset * offset.transpose();
-  const Mat3 both = mixed + mixed.transpose();
-  return {m.weight, m.first - m.weight * offset, (m.second - both) + m.weight * square};
+  return {a.weight - b.weight, a.first - b.first};
 }
 
 struct VertexWeight {
@@ -63,16 +47,12 @@ struct JointPart {
   PointMoments moments;
 };
 
-enum class MomentOrder { kFirst, kSecond };
-
 // Every joint's parts in the rows of all vertices.
 class MomentTable {
  public:
-  MomentTable(const SmoothingSurface& surface, Index jointCount, const DirectDeltaMushOptions& options,
-              MomentOrder order)
+  MomentTable(const SmoothingSurface& surface, Index jointCount, const DirectDeltaMushOptions& options)
       : surface_(surface),
         options_(options),
-        order_(order),
         rotation_(surface, surface.stepsFor(options.rotationReach) / options.smoothings, options.smoothings),
         translation_(surface, surface.stepsFor(options.translationReach) / options.smoothings, options.smoothings),
         boundTo_(jointCount) {
@@ -80,8 +60,7 @@ class MomentTable {
     makePositions();
   }
 
-  // Calls addRow(vertex, parts, whole) of each vertex in order: its joints' parts, strongest first, and the moments of
-  // all its surroundings.
+  // Calls addRow(vertex, parts) of each vertex in order: its joints' parts, strongest first.
   template <class AddRow>
   void forEachRow(const AddRow& addRow) const {
     constexpr double kRounding = 1e-6;
@@ -91,16 +70,15 @@ class MomentTable {
       std::vector<JointPart>& parts = ofVertex[v];
       std::stable_sort(parts.begin(), parts.end(),
                        [](const JointPart& a, const JointPart& b) { return a.moments.weight > b.moments.weight; });
-      if (order_ == MomentOrder::kFirst) dropWeakest(parts);
+      dropWeakest(parts);
       PointMoments all = bound[v];
       if (std::abs(all.weight - 1) < kRounding) all = whole[v], all.weight = 1;
       completeParts(parts, all);
-      addRow(v, parts, whole[v]);
+      addRow(v, parts);
     }
   }
 
   const Vec3& smoothedPosition(Index vertex) const { return positions_[vertex]; }
-  Index jointCount() const { return static_cast<Index>(boundTo_.size()); }
 
  private:
   void gatherWeights() {
@@ -141,31 +119,24 @@ class MomentTable {
     Vec3 middle = Vec3::Zero();
     for (const VertexWeight& w : weights) middle += position(w.vertex) / static_cast<double>(weights.size());
     const std::size_t size = std::size_t{ImplicitSmoother::kColumns} * surface_.vertexCount();
-    std::vector<double> lower(size, 0.0), upper(size, 0.0), translation(size, 0.0);
+    std::vector<double> moments(size, 0.0), translation(size, 0.0);
     for (const VertexWeight& w : weights) {
       const Vec3 arm = position(w.vertex) - middle;
-      double* low = lower.data() + rotation_.rowOf(w.vertex);
-      double* high = upper.data() + rotation_.rowOf(w.vertex);
-      low[0] += w.weight;
+      double* row = moments.data() + rotation_.rowOf(w.vertex);
+      row[0] += w.weight;
       translation[translation_.rowOf(w.vertex)] += w.weight;
-      for (int i = 0; i < 3; ++i) {
-        low[1 + i] += w.weight * arm[i];
-        low[4 + i] += w.weight * arm[i] * arm[i];
-        high[i] += w.weight * arm[i] * arm[(i + 1) % 3];
-      }
+      for (int i = 0; i < 3; ++i) row[1 + i] += w.weight * arm[i];
     }
-    rotation_.smooth(lower, order_ == MomentOrder::kFirst ? 4 : 7);
-    if (order_ == MomentOrder::kSecond) rotation_.smooth(upper, 3);
+    rotation_.smooth(moments, 4);
     translation_.smooth(translation, 1);
     std::vector<PointMoments> result;
     for (Index v = 0; v < surface_.vertexCount(); ++v) {
-      const double* low = lower.data() + rotation_.rowOf(v);
-      const double* high = upper.data() + rotation_.rowOf(v);
-      PointMoments m = {low[0], {low[1], low[2], low[3]}, Mat3::Zero()};
-      m.second << low[4], high[0], high[2], high[0], low[5], high[1], high[2], high[1], low[6];
-      m = (1 - options_.translationWeight) * about(m, positions_[v] - middle);
+      const double* row = moments.data() + rotation_.rowOf(v);
+      // About the smoothed position.
+      PointMoments m = {row[0], Vec3(row[1], row[2], row[3]) - row[0] * (positions_[v] - middle)};
+      m = (1 - options_.translationWeight) * m;
       m.weight += options_.translationWeight * translation[translation_.rowOf(v)];
-      if (surface_.stiffness.coeff(v, v) == 0 || !m.isFinite()) m = {low[0], Vec3::Zero(), Mat3::Zero()};
+      if (surface_.stiffness.coeff(v, v) == 0 || !m.isFinite()) m = {row[0], Vec3::Zero()};
       result.push_back(m);
     }
     return result;
@@ -217,30 +188,11 @@ class MomentTable {
 
   const SmoothingSurface& surface_;
   const DirectDeltaMushOptions& options_;
-  MomentOrder order_;
   ImplicitSmoother rotation_, translation_;
   std::vector<std::vector<VertexWeight>> boundTo_;  // by joint
   std::vector<VertexWeight> everything_, bound_;
   std::vector<Vec3> positions_;
 };
-
-void addMatrix(const PointMoments& m, std::vector<float>& to) {
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) to.push_back(static_cast<float>(m.second(row, column)));
-    to.push_back(static_cast<float>(m.first[row]));
-  }
-  for (int column = 0; column < 3; ++column) to.push_back(static_cast<float>(m.first[column]));
-  to.push_back(static_cast<float>(m.weight));
-}
-
-void addBase(const Mat3& second, const Vec3& position, std::vector<float>& to) {
-  for (int column = 0; column < 3; ++column) {
-    for (int row = 0; row < 3; ++row) to.push_back(static_cast<float>(second(row, column)));
-    to.push_back(0);
-  }
-  for (int i = 0; i < 3; ++i) to.push_back(static_cast<float>(position[i]));
-  to.push_back(static_cast<float>(1 / second.trace()));
-}
 
 // Four joints from `first` on.
 void addEntry(const std::vector<JointPart>& parts, std::size_t first, const Vec3& position, DirectDeltaMushRows& rows) {
@@ -268,15 +220,6 @@ bool packJoints(std::span<const Affine> transforms, float* columns, float* stret
   return stretched;
 }
 
-template <class Rows>
-std::shared_ptr<Rows> emptyRows(const SmoothingSurface& surface, const MomentTable& table) {
-  auto rows = std::make_shared<Rows>();
-  rows->rowOf = surface.weldedVertex;
-  rows->jointCount = table.jointCount();
-  rows->begin.push_back(0);
-  return rows;
-}
-
 void checkOptions(const DirectDeltaMushOptions& options) {
   const bool right = options.rotationReach > 0 && options.translationReach > 0 && options.smoothings > 0 &&
                      options.translationWeight >= 0 && options.translationWeight < 1 && options.minWeight >= 0 &&
@@ -285,52 +228,23 @@ void checkOptions(const DirectDeltaMushOptions& options) {
   if (!right) throw Error(ErrorCode::kBadArgument, "an option of direct delta mush is out of its range");
 }
 
-// A job with the arrays that both forms have in their rows.
-template <class Rows>
-DeformJob rowsJob(const DeformInput& input, const DeformOutput& output, const Rows& rows) {
-  DeformJob job = deformJob(input, output);
-  job.rowOf = rows.rowOf.data();
-  job.rowBegin = rows.begin.data();
-  job.rowJoints = rows.joints.data();
-  job.rowMoments = rows.moments.data();
-  return job;
-}
-
 }  // namespace
 
 std::shared_ptr<const DirectDeltaMushRows> directDeltaMushRows(const BoundSurface& surface, Index jointCount,
                                                                const DirectDeltaMushOptions& options) {
   checkOptions(options);
   const SmoothingSurface smooth = smoothingSurface(surface);
-  const MomentTable table(smooth, jointCount, options, MomentOrder::kFirst);
-  auto rows = emptyRows<DirectDeltaMushRows>(smooth, table);
-  table.forEachRow([&](Index v, const std::vector<JointPart>& parts, const PointMoments&) {
+  const MomentTable table(smooth, jointCount, options);
+  auto rows = std::make_shared<DirectDeltaMushRows>();
+  rows->rowOf = smooth.weldedVertex;
+  rows->jointCount = jointCount;
+  rows->begin.push_back(0);
+  table.forEachRow([&](Index v, const std::vector<JointPart>& parts) {
     const Vec3& position = table.smoothedPosition(v);
     for (std::size_t first = 0; first < parts.size(); first += 4) addEntry(parts, first, position, *rows);
     rows->begin.push_back(static_cast<Index>(rows->joints.size() / 4));
     for (int axis = 0; axis < 3; ++axis) rows->positions.push_back(static_cast<float>(position[axis]));
     rows->positions.push_back(0);
-  });
-  return rows;
-}
-
-std::shared_ptr<const FullDirectDeltaMushRows> fullDirectDeltaMushRows(const BoundSurface& surface, Index jointCount,
-                                                                       const DirectDeltaMushOptions& options) {
-  checkOptions(options);
-  const SmoothingSurface smooth = smoothingSurface(surface);
-  const MomentTable table(smooth, jointCount, options, MomentOrder::kSecond);
-  auto rows = emptyRows<FullDirectDeltaMushRows>(smooth, table);
-  table.forEachRow([&](Index v, std::vector<JointPart>& parts, PointMoments whole) {
-    const double round =
-        kRoundness / 3 * whole.second.trace() + kMinRoundness * smooth.longestSide * smooth.longestSide;
-    for (JointPart& part : parts) {
-      part.moments.second.diagonal().array() += round * part.moments.weight;
-      rows->joints.push_back(part.joint);
-      addMatrix(part.moments, rows->moments);
-    }
-    rows->begin.push_back(static_cast<Index>(rows->joints.size()));
-    whole.second.diagonal().array() += round;
-    addBase(whole.second, table.smoothedPosition(v), rows->bases);
   });
   return rows;
 }
@@ -344,10 +258,6 @@ std::shared_ptr<const DeformRows> directDeltaMushDrawRows(const BoundSurface& su
   auto rows = std::dynamic_pointer_cast<const DirectDeltaMushRows>(preparation);
   if (!rows || rows->rowOf.size() != surface.positions.size()) refusePreparation();
   return rows;
-}
-
-std::shared_ptr<const DeformPreparation> prepareFullDirectDeltaMush(const BoundSurface& surface, Index jointCount) {
-  return fullDirectDeltaMushRows(surface, jointCount);
 }
 
 std::size_t directDeltaMushScratch(std::size_t /*vertexCount*/, Index jointCount) {
@@ -364,41 +274,16 @@ void directDeltaMush(const DeformInput& input, const DeformOutput& output, std::
   float* motions = stretches + kFloatsPerColumns * jointCount;
   const bool stretched = packJoints(input.transforms, columns, stretches, motions);
 
-  DeformJob job = rowsJob(input, output, rows);
+  DeformJob job = deformJob(input, output);
+  job.rowOf = rows.rowOf.data();
+  job.rowBegin = rows.begin.data();
+  job.rowJoints = rows.joints.data();
+  job.rowMoments = rows.moments.data();
   job.columns = columns;
   job.stretches = stretches;
   job.motions = motions;
   job.rowPositions = rows.positions.data();
   runDeformJob(directKernels().direct[job.outNormals != nullptr][stretched], job, input.positions.size());
-}
-
-std::size_t fullDirectDeltaMushScratch(std::size_t /*vertexCount*/, Index jointCount) {
-  return (kFloatsPerMotion + 3 * kFloatsPerColumns) * jointCount + kScratchAlignment;
-}
-
-void fullDirectDeltaMush(const DeformInput& input, const DeformOutput& output, std::span<float> scratch) {
-  const Index jointCount = static_cast<Index>(input.transforms.size());
-  checkDeformCall(input, output, scratch.size(), fullDirectDeltaMushScratch(input.positions.size(), jointCount));
-  const auto& rows = preparationOf<FullDirectDeltaMushRows>(input);
-  checkPreparedFor(rows.rowOf.size(), rows.jointCount, input);
-  float* columns = alignedScratch(scratch);
-  float* stretches = columns + kFloatsPerColumns * jointCount;
-  float* turns = stretches + kFloatsPerColumns * jointCount;
-  float* motions = turns + kFloatsPerColumns * jointCount;
-  const bool stretched = packJoints(input.transforms, columns, stretches, motions);
-  for (Index j = 0; j < jointCount; ++j) {
-    const float* motion = motions + kFloatsPerMotion * j;
-    const Quat rotation(motion[3], motion[0], motion[1], motion[2]);
-    packColumns(Affine(rotation.normalized()), turns + kFloatsPerColumns * j);
-  }
-
-  DeformJob job = rowsJob(input, output, rows);
-  job.columns = columns;
-  job.stretches = stretches;
-  job.turns = turns;
-  job.motions = motions;
-  job.rowBases = rows.bases.data();
-  runDeformJob(baselineFullDirectKernels().direct[job.outNormals != nullptr][stretched], job, input.positions.size());
 }
 
 }  // namespace limber

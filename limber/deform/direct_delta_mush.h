@@ -15,15 +15,15 @@ struct DirectDeltaMushOptions {
   double rotationReach = 0.08, translationReach = 0.046;
   double translationWeight = 0.8;  // alpha of the paper, in [0, 1): 0 smooths as delta mush does, which shrinks bends
   int smoothings = 2;              // p; more make the reach end sooner
-  // Least weight of a joint in a vertex; smaller ones are given to the others. On people the mean distance of
-  // directDeltaMush from the full one grows by 4 to 7 % with 1 / 96 against 1 / 256, by 12 to 21 % with 1 / 48.
+  // Least weight of a joint in a vertex; smaller ones are given to the others. On people the mean distance from the
+  // paper's full form grows by 4 to 7 % with 1 / 96 against 1 / 256, by 12 to 21 % with 1 / 48.
   double minWeight = 1.0 / 64;
-  // Of a vertex, the strongest; what the rest had is given to them. Not in full. With 8 the mean distance from the full
-  // one is at most 4 % above that with all joints, with 6 20 %, with 4 75 % (a person of 163 joints).
+  // Of a vertex, the strongest; what the rest had is given to them. With 8 the mean distance from the full form is at
+  // most 4 % above that with all joints, with 6 20 %, with 4 75 % (a person of 163 joints).
   Index maxJoints = 8;
-  // Of the joints in an entry of four behind the first, together; where they have less, it is given to the others. Not
-  // in full. With 1 / 32 against 0 the mean distance from the full one grows by 1 % on 25 artists' creatures, by 4 %
-  // with 1 / 8; on the bench's creature 95 of 100 vertices lie within 1.88 thousandths of the longest side against
+  // Of the joints in an entry of four behind the first, together; where they have less, it is given to the others.
+  // With 1 / 32 against 0 the mean distance from the full form grows by 1 % on 25 artists' creatures, by 4 % with
+  // 1 / 8; on the bench's creature 95 of 100 vertices lie within 1.88 thousandths of the longest side against
   // 1.72, and a frame takes 1.99 times that of dual quaternions against 2.07 (maxJoints = 4: 2.16 and 1.94).
   double minEntry = 1.0 / 32;
 };
@@ -48,43 +48,13 @@ std::shared_ptr<const DirectDeltaMushRows> directDeltaMushRows(const BoundSurfac
 // rotations blended as quaternions by the smoothed weights, instead of the rotation nearest to what they do to the
 // surroundings. Joints' scales and shears are blended apart, as for centersOfRotation (the paper has rigid motions
 // only). Vertices far from joints that bend follow theirs exactly.
-// Against fullDirectDeltaMush with a minWeight of 1/256, on three people of 1.8 m, each third joint bent by up to 1.5
-// rad: 95 of 100 vertices within 1.2 to 3.9 mm (linear blend: 2.8 to 9.7), at most 17 mm; that is with a minEntry of 0;
-// the default adds up to 6 %.
+// Against the full form (variant 0 with the fitted rotation) with a minWeight of 1/256, on three people of 1.8 m, each
+// third joint bent by up to 1.5 rad: 95 of 100 vertices within 1.2 to 3.9 mm (linear blend: 2.8 to 9.7), at most 17 mm;
+// that is with a minEntry of 0; the default adds up to 6 %.
 // Memory: 80 bytes for each four joints of a vertex of the welded surface and 20, and 4 for each vertex.
 // Cost: 5 multiplications and additions of four floats for each joint of a vertex, of which there are four or eight:
 // 1.5 to 2 times that of dual quaternions.
 void directDeltaMush(const DeformInput& input, const DeformOutput& output, std::span<float> scratch);
 std::size_t directDeltaMushScratch(std::size_t vertexCount, Index jointCount);
-
-// As DirectDeltaMushRows, with each entry the symmetric matrix sum over k of b_k w_kj [u_k - p; 1] [u_k - p; 1]^T.
-struct FullDirectDeltaMushRows : DeformPreparation {
-  std::vector<Index> rowOf;    // #V
-  std::vector<Index> begin;    // #S + 1
-  std::vector<Index> joints;   // #E, strongest first
-  std::vector<float> moments;  // #E * 16
-  std::vector<float> bases;    // #S * 16: columns of the sum over all joints, then p; 1 / trace in the last
-  Index jointCount = 0;
-};
-
-std::shared_ptr<const DeformPreparation> prepareFullDirectDeltaMush(const BoundSurface& surface, Index jointCount);
-std::shared_ptr<const FullDirectDeltaMushRows> fullDirectDeltaMushRows(const BoundSurface& surface, Index jointCount,
-                                                                       const DirectDeltaMushOptions& options = {});
-
-// Variant 0 of the paper (equations 14 to 18): R is the rotation nearest to what the joints do to the surroundings. A
-// little of the joints' blended rotation is added to the surroundings, which tells R where they are flat or a line. R
-// is found by four steps of Newton's method from the blended quaternions, within 1e-5 where joints turn against each
-// other by less than a right angle. Not in deformers(): what the fast one is measured by.
-// Cost: 20 multiplications and additions of four floats for each joint of a vertex, some 130 for R where there are
-// several: up to eight times that of dual quaternions.
-void fullDirectDeltaMush(const DeformInput& input, const DeformOutput& output, std::span<float> scratch);
-std::size_t fullDirectDeltaMushScratch(std::size_t vertexCount, Index jointCount);
-inline constexpr Deformer kFullDirectDeltaMush = {"full-direct-delta-mush",
-                                                  "direct delta mush with each rotation fitted to the surroundings",
-                                                  "Le, Lewis: Direct Delta Mush Skinning and Variants, 2019",
-                                                  &fullDirectDeltaMushScratch,
-                                                  &fullDirectDeltaMush,
-                                                  &prepareFullDirectDeltaMush,
-                                                  nullptr};
 
 }  // namespace limber
