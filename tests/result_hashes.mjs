@@ -39,7 +39,7 @@ const rigged = (model, options) => ({ model, options });
 const session = (commands, format = 'glb') => ({ commands, format });
 const hero = [{ do: 'open_sample', name: 'biped' }, { do: 'choose_methods', rigger: 'template', skinning: 'bone-heat' }];
 const posed = [
-  ...hero, { do: 'turn_joint', joint: 'leftUpperArm', axis: [0, 0.3, 1], degrees: 60 },
+  ...hero, { do: 'set_turn', joint: 'leftUpperArm', turn: [0, 0.3, 1].map((x) => 60 * x / Math.hypot(0.3, 1)), relative: true },
   { do: 'place_joint', joint: 'rightHand', position: [-0.3, 1.3, 0.3] }, { do: 'set_turn', joint: 'spine', turn: [10, -20, 5] },
 ];
 const moving = (method) => [

@@ -108,7 +108,7 @@ cases['a session: the pose that the native program makes of its record'] = () =>
   }
   console.log(`a drag's update: ${((performance.now() - started) / updates).toFixed(3)} ms at ${joints.length} joints`);
   run({ do: 'end_drag' });
-  run({ do: 'turn_joint', joint: joints[1].name, axis: [0, 1, 0.5], degrees: 25 });
+  run({ do: 'set_turn', joint: joints[1].name, turn: [0, 22.3607, 11.1803], relative: true });
   run({ do: 'set_turn', joint: joints[1].name, turn: [10, -20, 30], with: [joints[2].name] });
   session.turns().turns.slice(7, 10).forEach((value, i) => assert.ok(Math.abs(value - [10, -20, 30][i]) < 1e-4));
   run({ do: 'place_joint', joint: tip.name, position: [x + 0.1, y + 0.1, 0] });
@@ -167,7 +167,7 @@ function byRows({ positions, deformation: { places, ranges, entries } }, skin) {
 cases['a session: every deformer bends what is drawn and exported as the native program does'] = () => {
   const { joints } = session.run({ do: 'reset_pose' }).state;
   run({ do: 'set_ik', on: false });
-  for (const j of [3, 8, 14, 20]) run({ do: 'turn_joint', joint: joints[j].name, axis: [1, 0.3, 1], degrees: 60 });
+  for (const j of [3, 8, 14, 20]) run({ do: 'set_turn', joint: joints[j].name, turn: [41.5029, 12.4509, 41.5029], relative: true });
   const linear = verticesOf(session.export('obj').bytes), { positions } = session.model().model;
   assert.equal(linear.length, positions.length);
   const forms = {};
@@ -235,7 +235,7 @@ cases['a scene: several models in one file, as the native program writes it'] = 
   const hand = members[0].joints.find(({ part }) => part === 'left hand') ?? members[0].joints.at(-1);
   act({ do: 'attach_member', member: 'stool', to: 'robot', joint: hand.name, snap: true });
   act({ do: 'choose_member', member: 'robot' });
-  act({ do: 'turn_joint', joint: hand.name, axis: [0, 0, 1], degrees: 40 });
+  act({ do: 'set_turn', joint: hand.name, turn: [0, 0, 40], relative: true });
   act({ do: 'place_member', member: 'model', position: [-2, 0, 1], turn: [0, 45, 0], scale: 0.5 });
   assert.equal(scene.places().places.length, 48);
   assert.equal(scene.memberSkin(2).skin.length, 16);

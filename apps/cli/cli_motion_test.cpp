@@ -66,7 +66,8 @@ TEST_F(Cli, SessionReplayDoesWhatTheListSays) {
   fs::create_directory(folder_ / "models");
   run({"sample", "stool", "-o", "models/stool.glb", "-q"});
   put("commands.json", R"({"limber_commands": 1, "commands": [{"do": "open_file", "file": "models/stool.glb"},
-    {"do": "set_handles", "count": 8}, {"do": "move_joint", "joint": "handle_00", "offset": [0, 2, 0]}]})");
+    {"do": "set_handles", "count": 8},
+    {"do": "place_joint", "joint": "handle_00", "position": [0, 2, 0], "relative": true}]})");
   const Result done = run({"session", "replay", "commands.json", "-o", "posed.glb"});
   EXPECT_EQ(done.code, 0) << done.error;
   EXPECT_THAT(done.out, HasSubstr("3 commands done: "));

@@ -117,9 +117,9 @@ void addSessionCommand(CLI::App& program) {
   replay->footer(
       "Models are opened beside the list, or in the .limber file. Commands are those of limber/session/command.h:\n"
       "  {\"limber_commands\": 2, \"commands\": [{\"do\": \"open_file\", \"file\": \"fox.glb\"},\n"
-      "   {\"do\": \"set_handles\", \"count\": 20}, {\"do\": \"turn_joint\", \"joint\": \"handle_03\", \"axis\": [0, "
-      "1, 0],\n"
-      "   \"degrees\": 30}]}\n"
+      "   {\"do\": \"set_handles\", \"count\": 20}, {\"do\": \"set_turn\", \"joint\": \"handle_03\", \"turn\": [0, "
+      "30, 0],\n"
+      "   \"relative\": true}]}\n"
       "Further models come into the scene by add_sample and add_file; choose_member says which one the commands behind "
       "it are for.\n"
       "\nExample:\n"

@@ -6,7 +6,7 @@
 //
 //   const session = limber.createSession();
 //   session.run({ do: 'open_sample', name: 'biped' });
-//   session.run({ do: 'turn_joint', joint: 'handle_03.L', axis: [0, 0, 1], degrees: 30 });
+//   session.run({ do: 'set_turn', joint: 'handle_03.L', turn: [0, 0, 30], relative: true });
 //   save(session.export('glb').bytes);
 //
 // A session is a scene: further models come beside the first by add() and the command add_sample, and what is done is done

@@ -21,21 +21,20 @@ constexpr int kCommandsVersion = 2;  // 1 knew no motions that are put on as the
 
 // In the order of the variant. The formatter would put each on a line of its own.
 // clang-format off
-constexpr std::array<std::string_view, 66> kNames = {
-    "open_sample",   "open_file",      "set_handles",   "choose_methods",    "pin_joint",
-    "unpin_joint",   "begin_drag",     "update_drag",   "turn_drag",         "move_drag",
-    "end_drag",      "cancel_drag",    "turn_joint",    "move_joint",        "set_ik",
-    "set_target",    "clear_target",   "set_limits",    "reset_joint",       "reset_pose",
-    "mirror_pose",   "set_rest_pose",  "rename_joint",  "add_motion",        "add_sample_motion",
-    "retarget",      "set_contact",    "add_clip",      "remove_clip",       "rename_clip",
-    "choose_clip",   "set_time",       "set_key",       "move_key",          "delete_key",
-    "edit_keys",     "delete_keys",    "set_joint_key", "set_interpolation", "set_tangents",
-    "paste_keys",    "paint_weights",  "lock_weights",  "mirror_weights",    "add_joint",
-    "delete_joint",  "reparent_joint", "place_joint",   "set_turn",          "apply_pose",
-    "apply_tasks",   "undo",           "redo",          "add_sample",        "add_file",
-    "remove_member", "choose_member",  "rename_member", "place_member",      "attach_member",
-    "detach_member", "set_clock",      "set_deformer",  "transfer_rig",      "rig_from_animation",
-    "join_clips"};
+constexpr std::array<std::string_view, 62> kNames = {
+    "open_sample",        "open_file",     "set_handles",       "choose_methods", "pin_joint",
+    "unpin_joint",        "begin_drag",    "update_drag",       "turn_drag",      "move_drag",
+    "end_drag",           "cancel_drag",   "set_ik",            "set_target",     "clear_target",
+    "set_limits",         "reset_joint",   "reset_pose",        "mirror_pose",    "set_rest_pose",
+    "rename_joint",       "add_motion",    "add_sample_motion", "retarget",       "set_contact",
+    "add_clip",           "remove_clip",   "rename_clip",       "choose_clip",    "set_time",
+    "set_key",            "edit_keys",     "delete_keys",       "set_joint_key",  "set_interpolation",
+    "set_tangents",       "paste_keys",    "paint_weights",     "lock_weights",   "mirror_weights",
+    "add_joint",          "delete_joint",  "reparent_joint",    "place_joint",    "set_turn",
+    "apply_pose",         "apply_tasks",   "undo",              "redo",           "add_sample",
+    "add_file",           "remove_member", "choose_member",     "rename_member",  "place_member",
+    "attach_member",      "detach_member", "set_clock",         "set_deformer",   "transfer_rig",
+    "rig_from_animation", "join_clips"};
 // clang-format on
 static_assert(kNames.size() == std::variant_size_v<Command>);
 
@@ -105,6 +104,7 @@ void visitFields(Visitor& field, PlaceJoint& c) {
   field("position", c.position);
   field("with", c.with);
   field("mirrored", c.mirrored);
+  field("relative", c.relative);
 }
 template <class Visitor>
 void visitFields(Visitor& field, SetTurn& c) {
@@ -112,17 +112,7 @@ void visitFields(Visitor& field, SetTurn& c) {
   field("turn", c.turn);
   field("with", c.with);
   field("mirrored", c.mirrored);
-}
-template <class Visitor>
-void visitFields(Visitor& field, TurnJoint& c) {
-  field("joint", c.joint);
-  field("axis", c.axis);
-  field("degrees", c.degrees);
-}
-template <class Visitor>
-void visitFields(Visitor& field, MoveJoint& c) {
-  field("joint", c.joint);
-  field("offset", c.offset);
+  field("relative", c.relative);
 }
 template <class Visitor>
 void visitFields(Visitor& field, SetIk& c) {
@@ -264,15 +254,6 @@ void visitFields(Visitor& field, SetTime& c) {
 template <class Visitor>
 void visitFields(Visitor& field, SetKey& c) {
   field("span", c.span);
-}
-template <class Visitor>
-void visitFields(Visitor& field, MoveKey& c) {
-  field("from", c.from);
-  field("to", c.to);
-}
-template <class Visitor>
-void visitFields(Visitor& field, DeleteKey& c) {
-  field("seconds", c.seconds);
 }
 template <class Visitor>
 void visitFields(Visitor& field, EditKeys& c) {
@@ -493,7 +474,7 @@ class Reader {
   }
   void operator()(const char* key, std::vector<KeyOfJoint>& value) {
     readEntries(key, value, [](Reader& entry, KeyOfJoint& one) {
-      entry("joint", one.joint);
+      entry.optional("joint", one.joint);
       entry("seconds", one.seconds);
     });
   }
@@ -622,9 +603,44 @@ void bringUpToDate(Command& command) {
   if (retarget && retarget->method == "online") retarget->method = "limb-ik";
 }
 
+// Commands of older lists that are part of others by now.
+std::optional<Command> readFormer(std::string_view name, const JsonView& object) {
+  std::optional<Command> command;
+  Reader field(object);
+  if (name == "turn_joint") {
+    SetTurn turn;
+    Vec3 axis = Vec3::UnitY();
+    double degrees = 0;
+    field("joint", turn.joint);
+    field("axis", axis);
+    field("degrees", degrees);
+    turn.turn = degrees * axis.normalized();
+    turn.relative = true;
+    command = turn;
+  } else if (name == "move_joint") {
+    PlaceJoint move;
+    field("joint", move.joint);
+    field("offset", move.position);
+    move.relative = true;
+    command = move;
+  } else if (name == "move_key") {
+    double from = 0, to = 0;
+    field("from", from);
+    field("to", to);
+    command = EditKeys{.keys = {{{}, from}}, .shift = to - from};
+  } else if (name == "delete_key") {
+    KeyOfJoint key;
+    field("seconds", key.seconds);
+    command = DeleteKeys{{key}};
+  }
+  if (command) field.refuseOthers();
+  return command;
+}
+
 Command readCommand(const JsonView& object) {
   const std::string_view name = object.text("do");
   std::optional<Command> command = readNamed(name, object);
+  if (!command) command = readFormer(name, object);
   if (!command) object.fail(fmt::format("no command is called '{}'", name));
   bringUpToDate(*command);
   return *std::move(command);
@@ -658,7 +674,7 @@ std::string commandTypes() {
   return "// The commands of a session, made by limber session types. Vectors are in world space, metres.\n"
          "export type Vector = [number, number, number];\n"
          "export type Ray = { origin: Vector; direction: Vector };\n"
-         "export type KeyOfJoint = { joint: string; seconds?: number };\n"
+         "export type KeyOfJoint = { joint?: string; seconds?: number };\n"
          "export type PoseKey = { pose: string; joints?: string[]; seconds?: number };\n"
          "/** A triangle of the surface, and where on it: (1 - u - v, u, v) of its corners. */\n"
          "export type SurfaceDab = [triangle: number, u: number, v: number];\n"

@@ -96,6 +96,7 @@ struct PlaceJoint {
   Vec3 position = Vec3::Zero();
   std::vector<std::string> with = {};  // joints that are displaced likewise
   bool mirrored = false;               // as of BeginDrag
+  bool relative = false;               // `position` counts from where the joint is
 };
 // The joint turned so from its rest pose: degrees about the axes of its own frame (a rotation vector).
 struct SetTurn {
@@ -103,17 +104,7 @@ struct SetTurn {
   Vec3 turn = Vec3::Zero();
   std::vector<std::string> with = {};  // joints that are turned so from theirs
   bool mirrored = false;               // mirror images turn as far as their originals do
-};
-
-// For exact work: about the joint's own origin, an angle in degrees; and by an offset in metres.
-struct TurnJoint {
-  std::string joint;
-  Vec3 axis = Vec3::UnitY();
-  double degrees = 0;
-};
-struct MoveJoint {
-  std::string joint;
-  Vec3 offset = Vec3::Zero();
+  bool relative = false;               // from the pose as it is instead, about the axes of the world
 };
 
 // With inverse kinematics on, a joint that is moved takes its limb along, and joints with a target hold on to it.
@@ -274,15 +265,9 @@ struct SetTime {
 struct SetKey {
   double span = 0;  // seconds over which a correction of recorded motion comes and goes (clip_layer.h)
 };
-struct MoveKey {
-  double from = 0, to = 0;  // seconds
-};
-struct DeleteKey {
-  double seconds = 0;
-};
 // One key of one joint of the chosen clip.
 struct KeyOfJoint {
-  std::string joint;
+  std::string joint;  // empty: all that have a key then
   double seconds = 0;
 };
 // Keys go to pivot + scale * (seconds - pivot) + shift, and replace those that are there.
@@ -384,13 +369,13 @@ struct RigFromAnimation {
 
 using Command =
     std::variant<OpenSample, OpenFile, SetHandles, ChooseMethods, PinJoint, UnpinJoint, BeginDrag, UpdateDrag, TurnDrag,
-                 MoveDrag, EndDrag, CancelDrag, TurnJoint, MoveJoint, SetIk, SetTarget, ClearTarget, SetLimits,
-                 ResetJoint, ResetPose, MirrorPose, SetRestPose, RenameJoint, AddMotion, AddSampleMotion,
-                 RetargetMotion, SetContact, AddClip, RemoveClip, RenameClip, ChooseClip, SetTime, SetKey, MoveKey,
-                 DeleteKey, EditKeys, DeleteKeys, SetJointKey, SetInterpolation, SetTangents, PasteKeys, PaintWeights,
-                 LockWeights, MirrorWeights, AddJoint, DeleteJoint, ReparentJoint, PlaceJoint, SetTurn, ApplyPose,
-                 ApplyTasks, Undo, Redo, AddSample, AddFile, RemoveMember, ChooseMember, RenameMember, PlaceMember,
-                 AttachMember, DetachMember, SetClock, SetDeformer, TransferRig, RigFromAnimation, JoinClips>;
+                 MoveDrag, EndDrag, CancelDrag, SetIk, SetTarget, ClearTarget, SetLimits, ResetJoint, ResetPose,
+                 MirrorPose, SetRestPose, RenameJoint, AddMotion, AddSampleMotion, RetargetMotion, SetContact, AddClip,
+                 RemoveClip, RenameClip, ChooseClip, SetTime, SetKey, EditKeys, DeleteKeys, SetJointKey,
+                 SetInterpolation, SetTangents, PasteKeys, PaintWeights, LockWeights, MirrorWeights, AddJoint,
+                 DeleteJoint, ReparentJoint, PlaceJoint, SetTurn, ApplyPose, ApplyTasks, Undo, Redo, AddSample, AddFile,
+                 RemoveMember, ChooseMember, RenameMember, PlaceMember, AttachMember, DetachMember, SetClock,
+                 SetDeformer, TransferRig, RigFromAnimation, JoinClips>;
 
 // "auto", "flat", "free", as in JSON.
 std::string_view keyTangentsName(KeyTangents tangents);

@@ -27,8 +27,6 @@ std::vector<Command> oneOfEach() {
           MoveDrag{{0.1, 0, -0.25}, {0, 30, 0.5}},
           EndDrag{true},
           CancelDrag{},
-          TurnJoint{"head", {0, 1.0 / 3, 1}, 12.5},
-          MoveJoint{"hips", {0.1, -0.2, 0.3}},
           SetIk{false, "fabrik"},
           SetTarget{"foot.R", {1e-17, 2, 3}, {"foot.L"}},
           ClearTarget{"foot.R", {"foot.L"}},
@@ -48,8 +46,6 @@ std::vector<Command> oneOfEach() {
           ChooseClip{"walk"},
           SetTime{1.0 / 3},
           SetKey{},
-          MoveKey{0.5, 0.75},
-          DeleteKey{0.75},
           EditKeys{{{"Knee", 0.5}, {"Elbow", 0.25}}, 0.5, 2, 0.25, true},
           DeleteKeys{{{"Knee", 0.5}}},
           SetJointKey{"Knee", 0.5, {0, 30, 0}, {0, 0.1, 0}},
@@ -62,8 +58,8 @@ std::vector<Command> oneOfEach() {
           AddJoint{"head", {0, 2, 0}, "hat"},
           DeleteJoint{"hat"},
           ReparentJoint{"head", "hips"},
-          PlaceJoint{"hand.L", {0.5, 1, -0.25}, {"head"}, true},
-          SetTurn{"hand.L", {30, -20, 0.125}, {"head"}, true},
+          PlaceJoint{"hand.L", {0.5, 1, -0.25}, {"head"}, true, true},
+          SetTurn{"hand.L", {30, -20, 1.0 / 3}, {"head"}, true, true},
           ApplyPose{R"({"limber_pose": 1})", {"head", "hips"}, true},
           ApplyTasks{{"look-at:head=0,1,2", "balance=within"}, true},
           Undo{},
@@ -110,7 +106,6 @@ TEST(Command, JsonKeepsEveryCommandAndEveryField) {
   EXPECT_EQ(only<MoveDrag>(back).turn, Vec3(0, 30, 0.5));
   EXPECT_EQ(only<SetIk>(back).solver, "fabrik");
   EXPECT_EQ(only<SetDeformer>(back).deformer, "delta-mush");
-  EXPECT_EQ(only<TurnJoint>(back).axis.y(), 1.0 / 3);
   EXPECT_EQ(only<SetTarget>(back).position, Vec3(1e-17, 2, 3));
   EXPECT_EQ(only<MirrorPose>(back).from, MirrorFrom::kRight);
   EXPECT_FALSE(only<SetIk>(back).on);
@@ -122,13 +117,14 @@ TEST(Command, JsonKeepsEveryCommandAndEveryField) {
   EXPECT_EQ(only<AddJoint>(back).name, "hat");
   EXPECT_EQ(only<ReparentJoint>(back).parent, "hips");
   EXPECT_EQ(only<PlaceJoint>(back).position, Vec3(0.5, 1, -0.25));
-  EXPECT_EQ(only<SetTurn>(back).turn, Vec3(30, -20, 0.125));
+  EXPECT_TRUE(only<PlaceJoint>(back).relative);
+  EXPECT_EQ(only<SetTurn>(back).turn, Vec3(30, -20, 1.0 / 3));
+  EXPECT_TRUE(only<SetTurn>(back).relative);
   EXPECT_EQ(only<SetTurn>(back).with, std::vector<std::string>{"head"});
   EXPECT_TRUE(only<UpdateDrag>(back).snap);
   EXPECT_TRUE(only<EndDrag>(back).goesOn);
   EXPECT_EQ(only<ResetJoint>(back).with, std::vector<std::string>{"hips"});
   EXPECT_EQ(only<PaintWeights>(back).mode, PaintMode::kReplace);
-  EXPECT_EQ(only<MoveKey>(back).to, 0.75);
   ASSERT_EQ(only<EditKeys>(back).keys.size(), 2u);
   EXPECT_EQ(only<EditKeys>(back).keys[1].joint, "Elbow");
   EXPECT_EQ(only<EditKeys>(back).keys[1].seconds, 0.25);
@@ -173,6 +169,35 @@ TEST(Command, ListsOfOlderVersionsAreRead) {
   EXPECT_EQ(only<RetargetMotion>(old).method, "limb-ik") << "a method that there is no more";
 }
 
+// As the session did them when it had commands of those names.
+TEST(Command, CommandsThatArePartOfOthersByNowAreReadAsThose) {
+  const std::vector<Command> read = commandsFromJson(R"({"limber_commands": 2, "commands": [
+    {"do": "turn_joint", "joint": "head", "axis": [0, 0, 2], "degrees": -30},
+    {"do": "move_joint", "joint": "hips", "offset": [0.1, -0.2, 0.3]},
+    {"do": "move_key", "from": 0.5, "to": 0.75},
+    {"do": "delete_key", "seconds": 1.5}]})");
+  ASSERT_EQ(read.size(), 4u);
+  const auto& turned = std::get<SetTurn>(read[0]);
+  EXPECT_EQ(turned.joint, "head");
+  EXPECT_EQ(turned.turn, Vec3(0, 0, -30));
+  EXPECT_TRUE(turned.relative);
+  const auto& moved = std::get<PlaceJoint>(read[1]);
+  EXPECT_EQ(moved.joint, "hips");
+  EXPECT_EQ(moved.position, Vec3(0.1, -0.2, 0.3));
+  EXPECT_TRUE(moved.relative);
+  const auto& retimed = std::get<EditKeys>(read[2]);
+  ASSERT_EQ(retimed.keys.size(), 1u);
+  EXPECT_EQ(retimed.keys[0].joint, "") << "all joints";
+  EXPECT_EQ(retimed.keys[0].seconds, 0.5);
+  EXPECT_EQ(retimed.shift, 0.25);
+  EXPECT_EQ(retimed.scale, 1);
+  const auto& deleted = std::get<DeleteKeys>(read[3]);
+  ASSERT_EQ(deleted.keys.size(), 1u);
+  EXPECT_EQ(deleted.keys[0].joint, "");
+  EXPECT_EQ(deleted.keys[0].seconds, 1.5);
+  EXPECT_EQ(std::get<SetTurn>(commandFromJson(Json{{"do", "turn_joint"}, {"joint", "a"}})).turn, Vec3::Zero());
+}
+
 void expectRefused(const char* text, const char* where, const char* why) {
   try {
     commandsFromJson(text);
@@ -198,14 +223,16 @@ TEST(Command, WhatIsWrongIsNamed) {
   expectRefused(list(R"({"do": "fly"})"), "commands[1]", "'fly'");
   expectRefused(list(R"({"do": "undo", "often": 2})"), "commands[1].often", "not part");
   expectRefused(list(R"({"do": "reset_joint"})"), "commands[1]", "\"joint\"");
+  expectRefused(list(R"({"do": "turn_joint"})"), "commands[1]", "\"joint\"");
+  expectRefused(list(R"({"do": "move_key", "often": 2})"), "commands[1].often", "not part");
   expectRefused(list(R"({"do": "set_handles", "count": -3})"), "commands[1].count", "");
   expectRefused(list(R"({"do": "set_handles", "count": 1e300})"), "commands[1].count", "");
-  expectRefused(list(R"({"do": "move_joint", "joint": "a", "offset": [1, 2]})"), "commands[1].offset", "three");
+  expectRefused(list(R"({"do": "place_joint", "joint": "a", "position": [1, 2]})"), "commands[1].position", "three");
   expectRefused(list(R"({"do": "mirror_pose", "from": "above"})"), "commands[1].from", "'above'");
   expectRefused(list(R"({"do": "update_drag", "ray": 1})"), "commands[1].ray", "object");
   expectRefused(list(R"({"do": "retarget"})"), "commands[1]", "\"motion\"");
   expectRefused(list(R"({"do": "delete_keys"})"), "commands[1]", "\"keys\"");
-  expectRefused(list(R"({"do": "edit_keys", "keys": [{"seconds": 1}]})"), "commands[1].keys[0]", "\"joint\"");
+  expectRefused(list(R"({"do": "paste_keys", "keys": [{"seconds": 1}]})"), "commands[1].keys[0]", "\"pose\"");
   expectRefused(list(R"({"do": "edit_keys", "keys": [{"joint": "a", "at": 1}]})"), "commands[1].keys[0].at",
                 "not part");
   expectRefused(list(R"({"do": "set_interpolation", "interpolation": "wavy"})"), "commands[1].interpolation", "'wavy'");

@@ -81,12 +81,6 @@ void followPose(SessionState& state, const Which& which) {
   }
 }
 
-void editPoseOf(SessionState& state, const PoseEdits& edits) {
-  editPose(state.rig->skeleton(), state.pose, edits, state.limits.get());
-  holdTargets(state);
-  authored(state);
-}
-
 // Pinned joints have priority over the tasks.
 void applyTasks(SessionState& state, const ApplyTasks& command) {
   const Skeleton& skeleton = state.rig->skeleton();
@@ -378,11 +372,16 @@ struct Session::Runner {
 
   void operator()(const PlaceJoint& c) const {
     if (!c.position.allFinite()) refuse("the position is no number");
-    dragOnce(c, DragMode::kMove, [&](Drag& drag, const Vec3& position) { return drag.moved(c.position - position); });
+    dragOnce(c, DragMode::kMove, [&](Drag& drag, const Vec3& position) {
+      return drag.moved(c.relative ? c.position : Vec3(c.position - position));
+    });
   }
   void operator()(const SetTurn& c) const {
     if (!c.turn.allFinite()) refuse("the turn is no number");
-    dragOnce(c, DragMode::kTurn, [&](Drag& drag, const Vec3&) { return drag.turnedTo(c.turn); });
+    dragOnce(c, DragMode::kTurn, [&](Drag& drag, const Vec3&) {
+      if (!c.relative) return drag.turnedTo(c.turn);
+      return c.turn.isZero(0) ? drag.start() : drag.turned(c.turn, c.turn.norm());
+    });
   }
   // A drag without a pointer, from taking hold to letting go.
   template <class Gesture, class Move>
@@ -396,17 +395,6 @@ struct Session::Runner {
     session.commit(command, std::move(next));
   }
 
-  void operator()(const TurnJoint& c) const {
-    SessionState next = state();
-    if (!(c.axis.norm() > 0)) refuse("the axis has no direction");
-    editPoseOf(next, {{{c.joint, c.axis.normalized(), c.degrees}}, {}, {}});
-    session.commit(command, std::move(next));
-  }
-  void operator()(const MoveJoint& c) const {
-    SessionState next = state();
-    editPoseOf(next, {{}, {{c.joint, c.offset}}, {}});
-    session.commit(command, std::move(next));
-  }
   void operator()(const SetIk& c) const {
     SessionState next = state();
     findIkMethod(c.solver);
@@ -618,12 +606,6 @@ struct Session::Runner {
     SessionState next = state();
     setKeyOf(next.movement, next.rig->skeleton(), next.pose, c.span);
     session.commit(command, std::move(next));
-  }
-  void operator()(const MoveKey& c) const {
-    move([&](SessionState& next) { moveKeyOf(next.movement, next.rig->skeleton(), c.from, c.to); });
-  }
-  void operator()(const DeleteKey& c) const {
-    move([&](SessionState& next) { deleteKeyOf(next.movement, next.rig->skeleton(), c.seconds); });
   }
   void operator()(const EditKeys& c) const {
     move([&](SessionState& next) { retimeKeysOf(next.movement, next.rig->skeleton(), c); });

@@ -10,6 +10,7 @@
 #include "limber/document/write.h"
 #include "limber/session/session_state.h"
 #include "limber/session/testing/models.h"
+#include "limber/session/testing/relative_commands.h"
 
 namespace limber {
 namespace {
@@ -139,7 +140,7 @@ TEST(Session, FailuresAndCancellationLeaveEverythingAsItWas) {
   const std::string state = sessionState(session).dump();
   for (const Command& bad : std::vector<Command>{
            SetHandles{0}, SetHandles{1000000}, ChooseMethods{"magic", "bone-heat"}, OpenSample{"unicorn"},
-           ResetJoint{"no such joint"}, TurnJoint{"no such joint", Vec3::UnitX(), 10}, SetLimits{"{"},
+           ResetJoint{"no such joint"}, testing::turnedBy("no such joint", Vec3::UnitX(), 10), SetLimits{"{"},
            BeginDrag{
                session.state().rig->skeleton().joints[1].name, DragMode::kMove, {kCamera, Vec3::Zero()}, kForward}}) {
     EXPECT_THROW(run(session, bad), Error) << commandName(bad);
@@ -174,7 +175,7 @@ TEST(Session, IkPullsTheLimbAndTargetsHold) {
     EXPECT_EQ(session.state().pose.locals[j].translation, session.state().rig->home.locals[j].translation);
   }
   run(session, SetTarget{skeleton.joints[hand].name, goal});
-  run(session, MoveJoint{skeleton.joints[0].name, 0.1 * toBase});
+  run(session, testing::movedBy(skeleton.joints[0].name, 0.1 * toBase));
   EXPECT_LT((jointAt(session, hand) - goal).norm(), 2e-3);
   run(session, ClearTarget{skeleton.joints[hand].name});
   EXPECT_TRUE(session.state().targets.empty());
@@ -183,10 +184,10 @@ TEST(Session, IkPullsTheLimbAndTargetsHold) {
 TEST(Session, ResetPutsBackOneJointOrAll) {
   Session session = opened();
   const std::string name = session.state().rig->skeleton().joints[4].name;
-  run(session, TurnJoint{name, Vec3::UnitX(), 40});
+  run(session, testing::turnedBy(name, Vec3::UnitX(), 40));
   const Pose turned = session.state().pose;
-  run(session, MoveJoint{name, {0.1, 0, 0}});
-  run(session, TurnJoint{session.state().rig->skeleton().joints[2].name, Vec3::UnitY(), 20});
+  run(session, testing::movedBy(name, {0.1, 0, 0}));
+  run(session, testing::turnedBy(session.state().rig->skeleton().joints[2].name, Vec3::UnitY(), 20));
   run(session, ResetJoint{name});
   const Pose& home = session.state().rig->home;
   EXPECT_EQ(session.state().pose.locals[4].rotation.coeffs(), home.locals[4].rotation.coeffs());
@@ -225,7 +226,7 @@ TEST(Session, LeftIsTheBodysOwn) {
     const Index hand = skeleton.find("leftHand").value(), otherHand = skeleton.find("rightHand").value();
     EXPECT_EQ(joints[hand]["part"], "left hand");
     EXPECT_EQ(joints[otherHand]["part"], "right hand");
-    run(session, TurnJoint{"leftUpperArm", Vec3(0, 0, 1), 40});
+    run(session, testing::turnedBy("leftUpperArm", Vec3(0, 0, 1), 40));
     const Vec3 raised = jointAt(session, hand);
     run(session, MirrorPose{MirrorFrom::kLeft});
     EXPECT_LT((jointAt(session, hand) - raised).norm(), 1e-6) << "it stays";
@@ -248,10 +249,10 @@ std::size_t tellStory(Session& session) {
   tell(UpdateDrag{{kCamera, Vec3(0.1, 0, -1)}, kForward});
   tell(UpdateDrag{{kCamera, Vec3(0.03, 0.02, -1)}, kForward});
   tell(EndDrag{});
-  tell(TurnJoint{joint(3), Vec3(1, 1, 0), 35});
+  tell(testing::turnedBy(joint(3), Vec3(1, 1, 0), 35));
   tell(SetIk{true});
   tell(SetTarget{joint(12), Vec3(-0.3, 0.4, 0.2)});
-  tell(MoveJoint{joint(0), Vec3(0, 0.05, 0)});
+  tell(testing::movedBy(joint(0), Vec3(0, 0.05, 0)));
   tell(Undo{});
   tell(Redo{});
   tell(BeginDrag{joint(8), DragMode::kTurn, {kCamera, kForward}, kForward});
@@ -297,7 +298,7 @@ TEST(Session, ASavedSessionComesBackAsItWas) {
 
 TEST(Session, AModelWithARigKeepsItUntilOthersAreAskedFor) {
   Session first = opened(9);
-  run(first, TurnJoint{first.state().rig->skeleton().joints[2].name, Vec3::UnitZ(), 30});
+  run(first, testing::turnedBy(first.state().rig->skeleton().joints[2].name, Vec3::UnitZ(), 30));
   Session session;
   Progress progress;
   session.open(first.exportModel(ExportFormat::kGlb), "rigged.glb", progress);
@@ -354,7 +355,7 @@ TEST(Session, LimitsBendWhatIsTurned) {
   const std::string name = session.state().rig->skeleton().joints[5].name;
   run(session, SetLimits{R"({"limber_limits": 1, "joints": {")" + name + R"(": {"type": "hinge", "x": [0, 30]}}})"});
   EXPECT_EQ(sessionState(session)["limited"], true);
-  run(session, TurnJoint{name, Vec3::UnitX(), 80});
+  run(session, testing::turnedBy(name, Vec3::UnitX(), 80));
   const Quat turned = session.state().pose.locals[5].rotation;
   EXPECT_NEAR(turned.angularDistance(Quat(Eigen::AngleAxisd(30 * EIGEN_PI / 180, Vec3::UnitX()))), 0, 1e-9);
   run(session, SetLimits{});
@@ -376,7 +377,7 @@ TEST(Session, ExportsThePosedSurface) {
   double before = 1e9;
   for (const Vec3f& position : session.state().rig->geometry().positions)
     before = std::min(before, double{position.y()});
-  run(session, MoveJoint{session.state().rig->skeleton().joints[0].name, {0, 2, 0}});
+  run(session, testing::movedBy(session.state().rig->skeleton().joints[0].name, {0, 2, 0}));
   const Bytes obj = session.exportModel(ExportFormat::kObj);
   const std::string text(obj.begin(), obj.end());
   EXPECT_THAT(text, HasSubstr("\nf "));

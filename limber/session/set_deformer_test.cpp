@@ -14,6 +14,7 @@
 #include "limber/session/session.h"
 #include "limber/session/session_state.h"
 #include "limber/session/testing/models.h"
+#include "limber/session/testing/relative_commands.h"
 
 namespace limber {
 namespace {
@@ -39,7 +40,8 @@ Session bentBiped() {
   Progress progress;
   session.open(testing::bipedGlb(), "biped.glb", progress);
   take(session, SetHandles{16});
-  for (const Index joint : {3u, 6u, 9u, 12u}) take(session, TurnJoint{jointName(session, joint), {1, 0.5, 1}, 55});
+  for (const Index joint : {3u, 6u, 9u, 12u})
+    take(session, testing::turnedBy(jointName(session, joint), {1, 0.5, 1}, 55));
   return session;
 }
 
@@ -130,7 +132,7 @@ TEST(SetDeformer, TheRecordAndTheSavedSessionHaveIt) {
     Session session(bipedFiles);
     take(session, OpenFile{"biped.glb"});
     take(session, SetDeformer{std::string(deformer.name)});
-    take(session, TurnJoint{jointName(session, 1), {0, 0, 1}, 40});
+    take(session, testing::turnedBy(jointName(session, 1), {0, 0, 1}, 40));
     Session again(bipedFiles);
     for (const Command& command : commandsFromJson(commandsToJson(session.record()))) take(again, command);
     EXPECT_EQ(again.exportModel(ExportFormat::kObj), session.exportModel(ExportFormat::kObj)) << deformer.name;
@@ -259,7 +261,8 @@ TEST(SetDeformer, EachMemberOfASceneHasItsOwn) {
   EXPECT_EQ(scene.members()[0].session->state().deformer, "linear-blend");
   EXPECT_EQ(scene.members()[1].session->state().deformer, "dual-quaternion");
   const auto& skeleton = scene.session().state().rig->skeleton();
-  for (const Index joint : {2u, 5u}) scene.run(TurnJoint{skeleton.joints[joint].name, {0, 1, 0}, 100}, progress);
+  for (const Index joint : {2u, 5u})
+    scene.run(testing::turnedBy(skeleton.joints[joint].name, {0, 1, 0}, 100), progress);
   const std::vector<Vec3f> all = verticesOf(scene.exportModel(ExportFormat::kObj));
   scene.run(SetDeformer{"linear-blend"}, progress);
   const std::vector<Vec3f> linear = verticesOf(scene.exportModel(ExportFormat::kObj));

@@ -69,7 +69,7 @@ const cases = {
     assert.equal(result.report.counts.joints, 12);
     const session = limber.createSession();
     assert.ok(session.run({ do: 'open_sample', name: 'stool' }).ok);
-    const wrong = session.run({ do: 'turn_joint', joint: 'nobody' });
+    const wrong = session.run({ do: 'set_turn', joint: 'nobody' });
     assert.ok(!wrong.ok && wrong.error.message);
     const broken = limber.rig(new Uint8Array([1, 2, 3]), 'broken.glb');
     assert.ok(!broken.ok && broken.error.where === 'broken.glb');
@@ -246,7 +246,7 @@ const cases = {
     const limber = await load(), here = limber.createSession(), session = await worker.createSession(), other = await worker.createSession();
     assert.deepEqual(Object.keys(worker).filter((name) => name !== 'stop').sort(), Object.keys(limber).filter((name) => name !== 'forkSession').sort());
     assert.deepEqual(Object.keys(session).filter((name) => name !== 'fork').sort(), Object.keys(here).filter((name) => name !== 'handle').sort());
-    for (const command of [{ do: 'open_sample', name: 'stool' }, { do: 'set_handles', count: 5 }, { do: 'undo' }, { do: 'turn_joint', joint: 'nobody' }]) {
+    for (const command of [{ do: 'open_sample', name: 'stool' }, { do: 'set_handles', count: 5 }, { do: 'undo' }, { do: 'set_turn', joint: 'nobody' }]) {
       assert.deepEqual(await session.run(command), here.run(command));
     }
     assert.deepEqual(await session.model(), here.model());
@@ -302,18 +302,18 @@ const cases = {
       import { startWorker, WorkerError, type RigResult } from 'limber/worker';
       const worker = await startWorker(), remote = await worker.createSession(), text: string = new WorkerError({ code: '', message: '', where: '', remedy: '' }).error.code;
       const rigged: RigResult = await worker.rig(new Uint8Array(), 'a.glb', { pins: { head: [0, 1, 2] }, up: '+y' }, { onProgress: (stage, fraction) => stage.at(fraction) });
-      const turned = await remote.run({ do: 'turn_joint', joint: 'head', axis: [0, 1, 0], degrees: 30 });
+      const turned = await remote.run({ do: 'set_turn', joint: 'head', turn: [0, 30, 0], relative: true });
       if (turned.ok) { const skin: Float32Array = turned.skin; } else { const remedy: string = turned.error.remedy; }
       const names: string[] = (await worker.rigChoices()).template.map(({ name }) => name);
       const limber = await load(), session = limber.createSession();
-      session.run({ do: 'turn_joint', joint: 'head', axis: [0, 1, 0], degrees: 30 });
+      session.run({ do: 'set_turn', joint: 'head', turn: [0, 30, 0], relative: true });
       const list: Command[] = [{ do: 'undo' }, { do: 'begin_drag', joint: 'head', mode: 'turn' }];
       const result = limber.rig(new Uint8Array(), 'a.glb', { handles: 3 });
       if (result.ok) { const glb: Uint8Array = result.glb; } else { const text: string = result.error.remedy; }
-      ${["session.run({ do: 'turn_joint', joint: 'head', axes: [0, 1, 0] });", "session.run({ do: 'turn_joint', degrees: 30 });",
-      "session.run({ do: 'turn_joints', joint: 'head' });", "session.run({ do: 'begin_drag', joint: 'head', mode: 'twist' });",
-      "session.run({ do: 'move_joint', joint: 'head', offset: [0, 1] });", "limber.rig(new Uint8Array(), 'a.glb', { handle: 3 });",
-      "await worker.rig(new Uint8Array(), 'a.glb', { handle: 3 });", "await remote.run({ do: 'turn_joint', degrees: 30 });", "remote.handle;",
+      ${["session.run({ do: 'set_turn', joint: 'head', turns: [0, 1, 0] });", "session.run({ do: 'set_turn', turn: [0, 30, 0] });",
+      "session.run({ do: 'set_turns', joint: 'head' });", "session.run({ do: 'begin_drag', joint: 'head', mode: 'twist' });",
+      "session.run({ do: 'place_joint', joint: 'head', position: [0, 1] });", "limber.rig(new Uint8Array(), 'a.glb', { handle: 3 });",
+      "await worker.rig(new Uint8Array(), 'a.glb', { handle: 3 });", "await remote.run({ do: 'set_turn', turn: [0, 30, 0] });", "remote.handle;",
       "await worker.createSession(3);", "limber.rig(new Uint8Array(), 'a.glb', { up: '+w' });", "limber.rig(new Uint8Array(), 'a.glb', { pins: { head: [0, 1] } });",
       "limber.rig(new Uint8Array(), 'a.glb', { existingRig: 'keep' });", "limber.rig(new Uint8Array(), 'a.glb', { template: { name: 'own.bvh' } });",
     ].map((wrong) => `// @ts-expect-error\n${wrong}`).join('\n')}`);

@@ -199,8 +199,9 @@ void Drag::swing(Index joint, const Vec3& pivot, const Quat& rotation, Pose& pos
   const Affine above = parent ? globals_[*parent] : Affine::Identity();
   const Quat aboveRotation = decompose(above).rotation;
   Transform& local = pose.locals[joint];
-  const Vec3 moved = above.inverse(Eigen::Affine) * Vec3(pivot + rotation * (globals_[joint].translation() - pivot));
-  if (moved.allFinite()) local.translation = moved;
+  const Vec3 lever = globals_[joint].translation() - pivot;
+  const Vec3 moved = above.inverse(Eigen::Affine) * Vec3(pivot + rotation * lever);
+  if (!lever.isZero(0) && moved.allFinite()) local.translation = moved;
   local.rotation = (aboveRotation.conjugate() * rotation * aboveRotation * local.rotation).normalized();
   if (scene_.limits) local.rotation = nearestAllowed(scene_.limits->joints[joint], local.rotation);
 }

@@ -5,6 +5,7 @@
 
 #include "limber/core/error.h"
 #include "limber/session/testing/models.h"
+#include "limber/session/testing/relative_commands.h"
 
 namespace limber {
 namespace {
@@ -38,7 +39,7 @@ TEST(Measures, AModelAtRestIsNeitherStretchedNorFuller) {
 
 TEST(Measures, OneHandleHoldsEverythingAlike) {
   Session session = measured(1);
-  perform(session, TurnJoint{session.state().rig->skeleton().joints[0].name, Vec3(1, 1, 0), 60});
+  perform(session, testing::turnedBy(session.state().rig->skeleton().joints[0].name, Vec3(1, 1, 0), 60));
   const SessionMeasures measures = measureSession(session);
   EXPECT_EQ(measures.influences, 1);
   EXPECT_EQ(measures.smoothness, 0);
@@ -49,7 +50,7 @@ TEST(Measures, OneHandleHoldsEverythingAlike) {
 TEST(Measures, ADraggedHandleStretchesAndTargetsTellHowFarTheyAreMissed) {
   Session session = measured(20);
   const std::string last = session.state().rig->skeleton().joints.back().name;
-  perform(session, MoveJoint{last, {0.5, 0, 0}});
+  perform(session, testing::movedBy(last, {0.5, 0, 0}));
   EXPECT_GT(measureSession(session).stretch, 0.01);
   const Vec3 position = poseGlobals(session.state().rig->skeleton(), session.state().pose).back().translation();
   perform(session, SetTarget{last, position + Vec3(0, 3, 0)});  // not pinned while inverse kinematics is off

@@ -9,6 +9,7 @@
 #include "limber/samples/motions/sample_poses.h"
 #include "limber/session/rigged_model.h"
 #include "limber/session/session.h"
+#include "limber/session/testing/relative_commands.h"
 
 namespace limber {
 namespace {
@@ -63,8 +64,8 @@ TEST(ApplyPose, ComesBackBitForBitOnTheSameSkeleton) {
   for (const char* sample : {"biped", "quadruped", "winged", "stool"}) {
     Session session = freshly(sample);
     const std::string joint = session.state().rig->skeleton().joints.back().name;
-    follow(session, TurnJoint{joint, {1, 2, 3}, 40});
-    follow(session, MoveJoint{session.state().rig->skeleton().joints[0].name, {0.1, 0.05, -0.2}});
+    follow(session, testing::turnedBy(joint, {1, 2, 3}, 40));
+    follow(session, testing::movedBy(session.state().rig->skeleton().joints[0].name, {0.1, 0.05, -0.2}));
     const Pose posed = session.state().pose;
     const std::string text = session.savePose("mine");
     follow(session, ResetPose{});
@@ -115,7 +116,7 @@ TEST(ApplyPose, ASeatedOrCrouchedBodyKeepsItsFeetOnTheGroundAndWhereTheyStood) {
 TEST(ApplyPose, WhereTheBodyWasMovedItStays) {
   Session session = personWithNames();
   follow(session, SetIk{false, "whole-body"});
-  follow(session, MoveJoint{session.state().rig->skeleton().joints[0].name, {1.5, 0, -0.5}});
+  follow(session, testing::movedBy(session.state().rig->skeleton().joints[0].name, {1.5, 0, -0.5}));
   const Vec3 before = 0.5 * (isAt(session, "leftFoot") + isAt(session, "rightFoot"));
   follow(session, ApplyPose{sampleText("wave")});
   const Vec3 after = 0.5 * (isAt(session, "leftFoot") + isAt(session, "rightFoot"));
@@ -162,7 +163,7 @@ TEST(ApplyPose, PinsGoWhereThePoseHasThemAndLiftedFeetAreLetGo) {
   expectPinned();
   // What holds does not pull the pose back.
   const Pose posed = session.state().pose;
-  follow(session, TurnJoint{"head", {0, 1, 0}, 0});
+  follow(session, testing::turnedBy("head", {0, 1, 0}, 0));
   for (std::size_t j = 0; j < posed.locals.size(); ++j) {
     EXPECT_LT(posed.locals[j].rotation.angularDistance(session.state().pose.locals[j].rotation), 0.01) << j;
   }

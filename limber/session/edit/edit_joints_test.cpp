@@ -6,6 +6,7 @@
 #include "limber/document/read.h"
 #include "limber/document/rig/pose_io.h"
 #include "limber/session/testing/models.h"
+#include "limber/session/testing/relative_commands.h"
 #include "limber/skeleton/clip/keys/keyframes.h"
 
 namespace limber {
@@ -101,14 +102,14 @@ TEST(EditJoints, ADeletedJointsSurfaceFollowsTheJointAbove) {
 
 TEST(EditJoints, ANewJointStandsWhereItIsToldAndMovesNothing) {
   Session session = editing();
-  edit(session, TurnJoint{"leftUpperArm", Vec3::UnitZ(), 40});
+  edit(session, testing::turnedBy("leftUpperArm", Vec3::UnitZ(), 40));
   const std::vector<Vec3f> before = surfaceOf(session);
   const Vec3 position = positionOf(session, "leftHand") + Vec3(0.1, 0.05, 0);
   edit(session, AddJoint{"leftHand", position, "thumb"});
   EXPECT_LT((positionOf(session, "thumb") - position).norm(), 1e-6);
   EXPECT_LT(apart(surfaceOf(session), before), 1e-5);
   expectWrittenAsShown(session);
-  edit(session, TurnJoint{"thumb", Vec3::UnitZ(), 60});
+  edit(session, testing::turnedBy("thumb", Vec3::UnitZ(), 60));
   EXPECT_LT(apart(surfaceOf(session), before), 1e-5);
   edit(session, AddJoint{"thumb", position + Vec3(0.1, 0, 0), ""});
   EXPECT_TRUE(session.state().rig->skeleton().find("joint_1"));
@@ -121,15 +122,15 @@ TEST(EditJoints, ANewJointStandsWhereItIsToldAndMovesNothing) {
   paint.strength = 1;
   paint.dabs = {{0, 0.3, 0.3}};
   edit(session, paint);
-  edit(session, MoveJoint{"thumb", {0.2, 0, 0}});
+  edit(session, testing::movedBy("thumb", {0.2, 0, 0}));
   EXPECT_GT(apart(surfaceOf(session), before), 0.05) << "once it has weights";
   expectWrittenAsShown(session);
 }
 
 TEST(EditJoints, AJointHungElsewhereStaysInPlaceAndFollowsItsNewParent) {
   Session session = editing();
-  edit(session, TurnJoint{"chest", Vec3::UnitX(), 25});
-  edit(session, TurnJoint{"leftUpperArm", Vec3::UnitZ(), 40});
+  edit(session, testing::turnedBy("chest", Vec3::UnitX(), 25));
+  edit(session, testing::turnedBy("leftUpperArm", Vec3::UnitZ(), 40));
   edit(session, LockWeights{"leftHand", true});
   edit(session, SetTarget{"rightHand", positionOf(session, "rightHand")});
   const std::vector<Vec3f> before = surfaceOf(session);
@@ -143,7 +144,7 @@ TEST(EditJoints, AJointHungElsewhereStaysInPlaceAndFollowsItsNewParent) {
   EXPECT_EQ(jointsOf(session)[session.state().targets[0].joint].name, "rightHand");
   EXPECT_TRUE(session.state().locked.count("leftHand"));
   expectWrittenAsShown(session);
-  edit(session, TurnJoint{"chest", Vec3::UnitX(), 25});
+  edit(session, testing::turnedBy("chest", Vec3::UnitX(), 25));
   EXPECT_LT((positionOf(session, "leftHand") - hand).norm(), 1e-6) << "the chest does not move it any more";
 }
 

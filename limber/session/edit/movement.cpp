@@ -83,32 +83,42 @@ void editLayer(SessionClip& chosen, const Skeleton& skeleton, const Edit& edit) 
   applyLayerOf(chosen, skeleton);
 }
 
-// What a layer's keys at a moment are, whatever their joints; empty where there is none.
-std::vector<JointKey> layerKeysAt(const ClipLayer& layer, double seconds) {
+JointKey keyNamed(const Skeleton& skeleton, const KeyOfJoint& key) {
+  const std::optional<Index> joint = skeleton.find(key.joint);
+  if (!joint) refuse(fmt::format("no joint is called '{}'", key.joint));
+  return {*joint, key.seconds};
+}
+
+// `timed` has the keys that a name without a joint means.
+std::vector<JointKey> keysNamed(const Skeleton& skeleton, const std::vector<KeyOfJoint>& named,
+                                const std::vector<JointKeyTimes>& timed) {
+  if (named.empty()) refuse("no keys are given");
   std::vector<JointKey> keys;
-  for (const LayerTrack& track : layer.tracks) {
-    for (const LayerKey& key : track.keys) {
-      if (std::abs(key.seconds - seconds) < kKeySnap) keys.push_back({track.joint, key.seconds});
+  for (const KeyOfJoint& key : named) {
+    if (!key.joint.empty()) {
+      keys.push_back(keyNamed(skeleton, key));
+      continue;
+    }
+    for (const auto& [joint, times] : timed) {
+      const auto isThen = [&](double seconds) { return std::abs(seconds - key.seconds) < kKeySnap; };
+      if (std::any_of(times.begin(), times.end(), isThen)) keys.push_back({joint, key.seconds});
     }
   }
   return keys;
 }
 
-std::vector<JointKey> keysNamed(const Skeleton& skeleton, const std::vector<KeyOfJoint>& named) {
-  if (named.empty()) refuse("no keys are given");
-  std::vector<JointKey> keys;
-  for (const KeyOfJoint& key : named) {
-    const std::optional<Index> joint = skeleton.find(key.joint);
-    if (!joint) refuse(fmt::format("no joint is called '{}'", key.joint));
-    keys.push_back({*joint, key.seconds});
+// `edit` takes what has the keys, a layer or a clip, and the keys.
+template <class Edit>
+void editNamedKeys(SessionClip& chosen, const Skeleton& skeleton, const std::vector<KeyOfJoint>& named,
+                   const Edit& edit) {
+  if (chosen.base) {
+    const std::vector<JointKey> keys = keysNamed(skeleton, named, keyTimesOfJoints(chosen.layer));
+    if (!keys.empty()) return editLayer(chosen, skeleton, [&](ClipLayer& layer) { edit(layer, keys); });
   }
-  return keys;
-}
-
-std::vector<KeyOfJoint> keysAt(const PoseKey& key) {
-  std::vector<KeyOfJoint> keys;
-  for (const std::string& joint : key.joints) keys.push_back({joint, key.seconds});
-  return keys;
+  const Clip& own = chosen.base ? *chosen.base : *chosen.clip;
+  const std::vector<JointKey> keys = keysNamed(skeleton, named, keyTimesOfJoints(own));
+  if (keys.empty()) refuse(fmt::format("there is no key at {} s", named.front().seconds));
+  editOwnKeys(chosen, skeleton, [&](Clip& clip) { edit(clip, keys); });
 }
 
 double spanNear(const ClipLayer& layer, const JointKey& jointKey) {
@@ -463,47 +473,21 @@ void setKeyOf(Movement& movement, const Skeleton& skeleton, const Pose& pose, do
   editLayer(chosen, skeleton, [&](ClipLayer& layer) { setKey(layer, base, shown, pose, seconds, span); });
 }
 
-void moveKeyOf(Movement& movement, const Skeleton& skeleton, double from, double to) {
-  SessionClip& chosen = requireChosen(movement);
-  const std::vector<JointKey> keys = layerKeysAt(chosen.layer, from);
-  if (keys.empty()) return editOwnKeys(chosen, skeleton, [&](Clip& clip) { moveKey(clip, from, to); });
-  editLayer(chosen, skeleton, [&](ClipLayer& layer) { retimeKeys(layer, keys, {.shift = to - from}); });
-}
-
-void deleteKeyOf(Movement& movement, const Skeleton& skeleton, double seconds) {
-  SessionClip& chosen = requireChosen(movement);
-  const std::vector<JointKey> keys = layerKeysAt(chosen.layer, seconds);
-  if (keys.empty()) return editOwnKeys(chosen, skeleton, [&](Clip& clip) { deleteKey(clip, seconds); });
-  editLayer(chosen, skeleton, [&](ClipLayer& layer) { deleteKeys(layer, keys); });
-}
-
 void retimeKeysOf(Movement& movement, const Skeleton& skeleton, const EditKeys& command) {
-  SessionClip& chosen = requireChosen(movement);
-  const std::vector<JointKey> keys = keysNamed(skeleton, command.keys);
   const KeyRetiming retiming{command.shift, command.scale, command.pivot, command.copy};
-  const auto edit = [&](auto& keyed) { retimeKeys(keyed, keys, retiming); };
-  if (chosen.base) {
-    editLayer(chosen, skeleton, edit);
-  } else {
-    editOwnKeys(chosen, skeleton, edit);
-  }
+  editNamedKeys(requireChosen(movement), skeleton, command.keys,
+                [&](auto& keyed, const std::vector<JointKey>& keys) { retimeKeys(keyed, keys, retiming); });
 }
 
 void deleteKeysOf(Movement& movement, const Skeleton& skeleton, const std::vector<KeyOfJoint>& named) {
-  SessionClip& chosen = requireChosen(movement);
-  const std::vector<JointKey> keys = keysNamed(skeleton, named);
-  const auto edit = [&](auto& keyed) { deleteKeys(keyed, keys); };
-  if (chosen.base) {
-    editLayer(chosen, skeleton, edit);
-  } else {
-    editOwnKeys(chosen, skeleton, edit);
-  }
+  editNamedKeys(requireChosen(movement), skeleton, named,
+                [](auto& keyed, const std::vector<JointKey>& keys) { deleteKeys(keyed, keys); });
 }
 
 // Where the layer has no key at that moment, the new one comes and goes as the joint's nearest does.
 void setJointKeyOf(Movement& movement, const Skeleton& skeleton, const SetJointKey& command) {
   SessionClip& chosen = requireChosen(movement);
-  const JointKey key = keysNamed(skeleton, {{command.joint, command.seconds}}).front();
+  const JointKey key = keyNamed(skeleton, {command.joint, command.seconds});
   if (!command.turn.allFinite() || !command.offset.allFinite()) refuse("a key's value is no number");
   const Pose shown = clipPose(*chosen.clip, skeleton, key.seconds);
   Pose pose = shown;
@@ -538,7 +522,7 @@ void setTangentsOf(Movement& movement, const Skeleton& skeleton, const SetTangen
   SessionClip& chosen = requireChosen(movement);
   if (chosen.base) refuse("corrections of recorded motion have no tangents", chosen.clip->name);
   if (!command.turn.allFinite() || !command.offset.allFinite()) refuse("a tangent is no number");
-  const std::vector<JointKey> keys = keysNamed(skeleton, command.keys);
+  const std::vector<JointKey> keys = keysNamed(skeleton, command.keys, keyTimesOfJoints(*chosen.clip));
   editOwnKeys(chosen, skeleton, [&](Clip& clip) {
     for (const JointKey& key : keys) {
       const Transform local = clipPose(clip, skeleton, key.seconds).locals[key.joint];
@@ -553,7 +537,8 @@ void pasteKeysOf(Movement& movement, const RiggedModel& rig, const PasteKeys& co
   if (command.keys.empty()) refuse("no keys are given");
   for (const PoseKey& key : command.keys) {
     if (key.joints.empty()) refuse("no joints are given");
-    const std::vector<JointKey> keys = keysNamed(skeleton, keysAt(key));
+    std::vector<JointKey> keys;
+    for (const std::string& joint : key.joints) keys.push_back(keyNamed(skeleton, {joint, key.seconds}));
     const Pose shown = clipPose(*chosen.clip, skeleton, key.seconds);
     const Pose pose = appliedPose(rig, shown, {key.pose, key.joints});
     if (!chosen.base) {

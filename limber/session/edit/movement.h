@@ -107,11 +107,9 @@ void renameClip(Movement& movement, const std::string& from, const std::string& 
 void chooseClip(Movement& movement, const std::string& name);
 void setTime(Movement& movement, double seconds);
 
-// Of the chosen clip. Keys of recorded motion are those of its layer; only where that has none at a moment are those of
-// the motion itself moved or taken out.
+// Of the chosen clip. Keys of recorded motion are those of its layer; only where that has none at a moment, and no joint
+// is named, are those of the motion itself moved or taken out.
 void setKeyOf(Movement& movement, const Skeleton& skeleton, const Pose& pose, double span);
-void moveKeyOf(Movement& movement, const Skeleton& skeleton, double from, double to);
-void deleteKeyOf(Movement& movement, const Skeleton& skeleton, double seconds);
 void retimeKeysOf(Movement& movement, const Skeleton& skeleton, const EditKeys& command);
 void deleteKeysOf(Movement& movement, const Skeleton& skeleton, const std::vector<KeyOfJoint>& keys);
 void setJointKeyOf(Movement& movement, const Skeleton& skeleton, const SetJointKey& command);

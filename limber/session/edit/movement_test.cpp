@@ -17,6 +17,7 @@
 #include "limber/session/session.h"
 #include "limber/session/session_state.h"
 #include "limber/session/testing/models.h"
+#include "limber/session/testing/relative_commands.h"
 #include "limber/skeleton/clip/keys/keyframes.h"
 #include "shared_data.h"
 
@@ -180,7 +181,7 @@ TEST(Movement, ClipsAreJoinedOverlappingAndJoinedAnew) {
 
   // Replaced, with the corrections on top.
   act(session, SetTime{0.1});
-  act(session, TurnJoint{"head", Vec3::UnitX(), 20});
+  act(session, testing::turnedBy("head", Vec3::UnitX(), 20));
   act(session, SetKey{0.1});
   act(session, JoinClips{{"walk", "walk", "walk"}, 0.2, "walk_walk"});
   EXPECT_EQ(session.state().movement.clips.size(), 2u);
@@ -311,7 +312,7 @@ TEST(Movement, PosesBecomeKeys) {
   act(session, AddClip{"nod"});
   act(session, SetKey{});
   act(session, SetTime{0.5});
-  act(session, TurnJoint{"head", Vec3::UnitX(), 30});
+  act(session, testing::turnedBy("head", Vec3::UnitX(), 30));
   act(session, SetKey{});
   act(session, SetTime{1});
   act(session, ResetJoint{"head"});
@@ -321,11 +322,11 @@ TEST(Movement, PosesBecomeKeys) {
   EXPECT_NEAR(turnOf(session, "head").angularDistance(Quat::Identity()), 15 * EIGEN_PI / 180, 1e-5);
   act(session, SetInterpolation{Interpolation::kStep});
   EXPECT_NEAR(turnOf(session, "head").angularDistance(Quat::Identity()), 0, 1e-5);
-  act(session, MoveKey{0.5, 0.2});
+  act(session, EditKeys{.keys = {{"", 0.5}}, .shift = -0.3});
   EXPECT_NEAR(turnOf(session, "head").angularDistance(Quat::Identity()), 30 * EIGEN_PI / 180, 1e-5);
-  act(session, DeleteKey{0.2});
+  act(session, DeleteKeys{{{"", 0.2}}});
   EXPECT_THAT(keyTimes(*session.state().movement.clip()), ElementsAre(0, 1));
-  EXPECT_THROW(act(session, DeleteKey{0.2}), Error);
+  EXPECT_THROW(act(session, DeleteKeys{{{"", 0.2}}}), Error);
   act(session, Undo{});
   EXPECT_THAT(keyTimes(*session.state().movement.clip()), ElementsAre(0, 0.2f, 1));
 }
@@ -375,7 +376,7 @@ void expectSameKeys(const Clip& a, const Clip& b) {
 Session correctedWalk() {
   Session session = walking();
   act(session, SetTime{0.5});
-  act(session, TurnJoint{"leftLowerArm", Vec3(0, 1, 0), 40});
+  act(session, testing::turnedBy("leftLowerArm", Vec3(0, 1, 0), 40));
   act(session, SetKey{.span = 0.3});
   return session;
 }
@@ -387,7 +388,7 @@ TEST(Movement, ACorrectionOfRecordedMotionComesAndGoesWithoutASpike) {
   EXPECT_TRUE(chosenJson(session)["keys"].empty()) << "it has one for every frame";
   act(session, SetTime{0.5});
   const Quat before = turnOf(session, "leftLowerArm");
-  act(session, TurnJoint{"leftLowerArm", Vec3(0, 1, 0), 40});
+  act(session, testing::turnedBy("leftLowerArm", Vec3(0, 1, 0), 40));
   act(session, SetKey{.span = 0.3});
   EXPECT_EQ(chosenJson(session)["joint_keys"].size(), 1u) << "one joint was corrected";
   EXPECT_THAT(chosenJson(session)["keys"], ElementsAre(0.5));
@@ -410,7 +411,7 @@ TEST(Movement, ACorrectionOfRecordedMotionComesAndGoesWithoutASpike) {
     EXPECT_LT(armAt(frame / 30.0).angularDistance(armAt((frame - 1) / 30.0)) * 30 * 180 / EIGEN_PI, 300) << frame;
   }
 
-  act(session, DeleteKey{0.5});
+  act(session, DeleteKeys{{{"", 0.5}}});
   EXPECT_EQ(session.state().movement.clips[0].clip, base) << "without keys the layer is gone";
 }
 
@@ -469,10 +470,10 @@ TEST(Movement, KeysOfALayerAreMovedScaledCopiedAndDeleted) {
 TEST(Movement, KeysOfOneJointOfAClipMadeByHand) {
   Session session = person();
   act(session, AddClip{"nod"});
-  act(session, TurnJoint{"head", Vec3::UnitX(), 10});
+  act(session, testing::turnedBy("head", Vec3::UnitX(), 10));
   act(session, SetKey{});
   act(session, SetTime{0.5});
-  act(session, TurnJoint{"head", Vec3::UnitX(), 30});
+  act(session, testing::turnedBy("head", Vec3::UnitX(), 30));
   act(session, SetKey{});
   EXPECT_FALSE(chosenJson(session)["recorded"].get<bool>());
   act(session, EditKeys{.keys = {{"head", 0.5}}, .shift = 0.5});
@@ -671,7 +672,7 @@ TEST(Movement, CurvesAndPathsRunThroughTheClip) {
   act(session, SetKey{});
   for (int k = 1; k <= 4; ++k) {
     act(session, SetTime{0.5 * k});
-    act(session, TurnJoint{"hips", Vec3::UnitY(), 75});
+    act(session, testing::turnedBy("hips", Vec3::UnitY(), 75));
     act(session, SetKey{});
   }
   const Movement& movement = session.state().movement;
@@ -703,8 +704,8 @@ TEST(Movement, ASavedSessionKeepsTheLayerOnItsMotion) {
   act(saved, SetTime{0.4});
   act(session, SetTime{0.4});
   EXPECT_LT(turnOf(saved, "leftLowerArm").angularDistance(turnOf(session, "leftLowerArm")), 1e-5);
-  act(saved, DeleteKey{0.5});
-  act(session, DeleteKey{0.5});
+  act(saved, DeleteKeys{{{"", 0.5}}});
+  act(session, DeleteKeys{{{"", 0.5}}});
   EXPECT_LT(turnOf(saved, "leftLowerArm").angularDistance(turnOf(session, "leftLowerArm")), 1e-5);
 }
 
@@ -765,7 +766,7 @@ TEST(Movement, ClipsAreChosenRenamedAndRemoved) {
 TEST(Movement, ExportedAndSavedClipsComeBack) {
   Session session = walking();
   act(session, AddClip{"nod"});
-  act(session, TurnJoint{"head", Vec3::UnitX(), 30});
+  act(session, testing::turnedBy("head", Vec3::UnitX(), 30));
   act(session, SetKey{});
   act(session, RenameJoint{"jaw", "mandible"});
   act(session, ChooseClip{"walk"});
@@ -804,12 +805,12 @@ TEST(Movement, ExportedAndSavedClipsComeBack) {
 TEST(Movement, TheRecordReplayedGivesTheSameBytes) {
   Session session = walking();
   act(session, SetTime{0.25});
-  act(session, TurnJoint{"head", Vec3::UnitY(), 20});
+  act(session, testing::turnedBy("head", Vec3::UnitY(), 20));
   act(session, SetKey{});
   act(session, RenameJoint{"head", "skull"});
   act(session, SetInterpolation{Interpolation::kCubic});
   act(session, AddClip{"still"});
-  act(session, MoveJoint{"hips", {0.1, 0.2, 0}});
+  act(session, testing::movedBy("hips", {0.1, 0.2, 0}));
   act(session, SetRestPose{});
   act(session, Undo{});
   act(session, Redo{});
@@ -825,8 +826,8 @@ TEST(Movement, ThePoseBecomesTheRestPose) {
   session.open(testing::bipedGlb(), "biped.glb", progress);
   act(session, SetHandles{12});
   const std::string name = session.state().rig->skeleton().joints.back().name;
-  act(session, TurnJoint{name, Vec3::UnitZ(), 25});
-  act(session, MoveJoint{session.state().rig->skeleton().joints[0].name, {0, 0.5, 0}});
+  act(session, testing::turnedBy(name, Vec3::UnitZ(), 25));
+  act(session, testing::movedBy(session.state().rig->skeleton().joints[0].name, {0, 0.5, 0}));
   const std::vector<Vec3f> posed = posedPositions(*session.state().rig, session.state().pose);
   act(session, SetRestPose{});
   EXPECT_FALSE(sessionState(session)["posed"].get<bool>());
@@ -855,8 +856,8 @@ TEST(Movement, KeysGoOverToOtherHandlesAndBack) {
   act(session, AddClip{"wave"});
   act(session, SetKey{});
   act(session, SetTime{1});
-  act(session, TurnJoint{last, Vec3::UnitZ(), 50});
-  act(session, MoveJoint{session.state().rig->skeleton().joints[0].name, {0, 0.2, 0}});
+  act(session, testing::turnedBy(last, Vec3::UnitZ(), 50));
+  act(session, testing::movedBy(session.state().rig->skeleton().joints[0].name, {0, 0.2, 0}));
   act(session, SetKey{});
   const std::vector<Vec3f> posed = posedPositions(*session.state().rig, session.state().pose);
   const auto clip = session.state().movement.clips[0].clip;
@@ -905,7 +906,7 @@ TEST(Movement, EditsStayOnOtherRigs) {
     return Vec3(poseGlobals(skeleton, session.state().pose)[skeleton.find(name).value()].translation());
   };
   act(session, SetTime{0.5});
-  act(session, TurnJoint{"leftUpperArm", Vec3(0, 0, 1), 60});
+  act(session, testing::turnedBy("leftUpperArm", Vec3(0, 0, 1), 60));
   act(session, SetKey{.span = 0.3});
   const Vec3 edited = handAt("leftHand");
   act(session, RenameJoint{"leftHand", "paw"});
@@ -929,7 +930,7 @@ TEST(Movement, RenamedJointsKeepTheirLimits) {
   act(session, SetLimits{R"({"limber_limits": 1, "joints": {"leftLowerLeg": {"type": "hinge", "x": [0, 30]}}})"});
   act(session, RenameJoint{"leftLowerLeg", "shin"});
   EXPECT_TRUE(sessionState(session)["limits"].contains("shin"));
-  act(session, TurnJoint{"shin", Vec3::UnitX(), 80});
+  act(session, testing::turnedBy("shin", Vec3::UnitX(), 80));
   EXPECT_NEAR(turnOf(session, "shin").angularDistance(Quat::Identity()), 30 * EIGEN_PI / 180, 1e-6);
   EXPECT_THROW(act(session, RenameJoint{"shin", "head"}), Error);
   EXPECT_THROW(act(session, RenameJoint{"shin", ""}), Error);

@@ -11,6 +11,7 @@
 #include "limber/session/session.h"
 #include "limber/session/session_state.h"
 #include "limber/session/testing/models.h"
+#include "limber/session/testing/relative_commands.h"
 
 namespace limber {
 namespace {
@@ -294,7 +295,7 @@ TEST(PaintWeights, WhatMakesNoSenseChangesNothing) {
 
 TEST(PaintWeights, TheBrushFindsTheSurfaceAsItStands) {
   Session session = personToPaint();
-  carryOut(session, TurnJoint{"hips", Vec3::UnitY(), 180});
+  carryOut(session, testing::turnedBy("hips", Vec3::UnitY(), 180));
   const std::optional<SurfaceHit> hit = session.pickSurface({Vec3(0, 1, 10), Vec3(0, 0, -1)});
   ASSERT_TRUE(hit);
   const RiggedModel& rig = *session.state().rig;

@@ -15,6 +15,7 @@
 #include "limber/session/scene/scene.h"
 #include "limber/session/session_state.h"
 #include "limber/session/testing/models.h"
+#include "limber/session/testing/relative_commands.h"
 
 namespace limber {
 namespace {
@@ -150,7 +151,7 @@ TEST(TakenRig, AnotherModelsJointsWeightsAndShapesComeOver) {
 TEST(TakenRig, TheRecordAndASavedSessionGiveTheSameModel) {
   Session session = openedModel("giant.glb");
   perform(session, TransferRig{"hero.glb"});
-  perform(session, TurnJoint{"head_hero", Vec3::UnitY(), 30});
+  perform(session, testing::turnedBy("head_hero", Vec3::UnitY(), 30));
   const Bytes model = session.exportModel(ExportFormat::kGlb);
   Session replayed(rigFiles), opened;
   for (const Command& command : commandsFromJson(commandsToJson(session.record()))) perform(replayed, command);

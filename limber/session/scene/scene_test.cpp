@@ -13,6 +13,7 @@
 #include "limber/session/scene/scene_state.h"
 #include "limber/session/session_state.h"
 #include "limber/session/testing/models.h"
+#include "limber/session/testing/relative_commands.h"
 
 namespace limber {
 namespace {
@@ -67,8 +68,12 @@ double distanceOf(const Affine& a, const Affine& b) {
 }
 
 TEST(SessionScene, OfOneModelIsAsASession) {
-  const std::vector<Command> commands = {
-      OpenFile{"biped.glb"}, SetHandles{5}, SetHandles{8}, TurnJoint{"handle_02", {0, 0, 1}, 20}, Undo{}, Redo{}};
+  const std::vector<Command> commands = {OpenFile{"biped.glb"},
+                                         SetHandles{5},
+                                         SetHandles{8},
+                                         testing::turnedBy("handle_02", {0, 0, 1}, 20),
+                                         Undo{},
+                                         Redo{}};
   SessionScene scene(sceneFiles);
   Session session(sceneFiles);
   Progress progress;
@@ -126,14 +131,14 @@ TEST(SessionScene, UndoGoesBackThroughTheStepsOfAllMembers) {
   const Bytes begun = scene.exportModel(ExportFormat::kGlb);
   const std::string leaf = leafOf(scene, 0);
   run(scene, ChooseMember{"person"});
-  run(scene, TurnJoint{leaf, {0, 0, 1}, 30});
+  run(scene, testing::turnedBy(leaf, {0, 0, 1}, 30));
   run(scene, ChooseMember{"person 2"});
-  run(scene, TurnJoint{leaf, {0, 1, 0}, 40});
+  run(scene, testing::turnedBy(leaf, {0, 1, 0}, 40));
   run(scene, PlaceMember{"biped", {2, 0, 1}, {0, 45, 0}, 0.5});
   run(scene, ChooseMember{"person"});
-  run(scene, TurnJoint{leaf, {1, 0, 0}, 10});
+  run(scene, testing::turnedBy(leaf, {1, 0, 0}, 10));
   const Bytes done = scene.exportModel(ExportFormat::kGlb);
-  EXPECT_EQ(scene.undoName(), "turn_joint");
+  EXPECT_EQ(scene.undoName(), "set_turn");
   run(scene, Undo{});
   EXPECT_EQ(scene.undoName(), "place_member");
   run(scene, Undo{});
@@ -155,7 +160,7 @@ TEST(SessionScene, ARemovedMemberComesBackWhole) {
   const std::string leaf = leafOf(scene, 1);
   run(scene, AttachMember{"biped", "person 2", leaf});
   run(scene, ChooseMember{"person 2"});
-  run(scene, TurnJoint{leaf, {0, 0, 1}, 25});
+  run(scene, testing::turnedBy(leaf, {0, 0, 1}, 25));
   const Bytes before = scene.exportModel(ExportFormat::kGlb);
   const Affine attachedTransform = scene.toScene(2);
   run(scene, RemoveMember{"person 2"});
@@ -179,7 +184,7 @@ TEST(SessionScene, WhatIsAttachedFollowsItsJoint) {
   const auto frame = [&] { return scene.toScene(0) * jointFrame(stateOf(scene, 0), leaf); };
   const Affine offset = frame().inverse() * before;
   run(scene, ChooseMember{"person"});
-  run(scene, TurnJoint{stateOf(scene, 0).rig->skeleton().joints[0].name, {0.3, 1, 0}, 70});
+  run(scene, testing::turnedBy(stateOf(scene, 0).rig->skeleton().joints[0].name, {0.3, 1, 0}, 70));
   EXPECT_GT(distanceOf(scene.toScene(2), before), 0.1);
   EXPECT_LT(distanceOf(scene.toScene(2), frame() * offset), 1e-6);
   // Through a clip, too.

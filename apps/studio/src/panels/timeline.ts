@@ -31,7 +31,7 @@ export function timeline(studio: Studio, page: PageStore, openSheet: () => Promi
   const loop = button('', () => page.set({ loop: !page.now.loop }), { icon: 'loop', label: say('Again and again'), id: 'loop' });
   const key = button(say('Key'), () => void studio.setKey(), { icon: 'key', keys: 'K', label: say('The pose becomes a key at this moment'), id: 'add-key' });
   const auto = button(say('Auto'), () => page.set({ autoKey: !page.now.autoKey }), { label: say('What is posed becomes a key at once'), id: 'auto-key' });
-  const erase = button('', () => void studio.run({ do: 'delete_key', seconds: keyHere(page) ?? 0 }), { icon: 'erase', label: say('Take the key at this moment out'), id: 'delete-key' });
+  const erase = button('', () => void studio.run({ do: 'delete_keys', keys: [{ seconds: keyHere(page) ?? 0 }] }), { icon: 'erase', label: say('Take the key at this moment out'), id: 'delete-key' });
   const between = element('select', { class: 'select', id: 'interpolation', 'aria-label': say('Between keys') },
     ...([['step', say('In steps')], ['linear', say('Straight')], ['cubic', say('Curved')]] as const).map(([value, text]) => element('option', { value }, text)));
   between.addEventListener('change', () => void studio.run({ do: 'set_interpolation', interpolation: between.value }));
@@ -138,7 +138,7 @@ function scrubber(studio: Studio, page: PageStore) {
         made.onpointermove = made.onpointerup = null;
         const to = placeOf(up.clientX);
         if (Math.abs(to - time) < frame / 2) studio.showMoment(time);
-        else void studio.run({ do: 'move_key', from: time, to });
+        else void studio.run({ do: 'edit_keys', keys: [{ seconds: time }], shift: to - time });
       };
     });
     return made;

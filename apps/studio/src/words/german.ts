@@ -195,7 +195,6 @@ export const german = {
   'The model was taken out of the scene': 'Das Modell ist nicht mehr in der Szene',
   'The joint was deleted': 'Das Gelenk ist gelöscht',
   'The clip was removed': 'Der Clip ist entfernt',
-  'The key was taken out': 'Der Keyframe ist entfernt',
   'The keys were taken out': 'Die Keyframes sind entfernt',
   'The rig was replaced': 'Das Skelett ist ersetzt',
   '{name} is forgotten': '{name} ist vergessen',

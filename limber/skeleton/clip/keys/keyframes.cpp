@@ -194,26 +194,6 @@ void collectTimes(const std::vector<Track<Value>>& tracks, std::vector<double>& 
   for (const Track<Value>& track : tracks) times.insert(times.end(), track.times.begin(), track.times.end());
 }
 
-// `edit` changes a track's keys and says whether it did; tracks that are left without keys go. Throws where it
-// changed none.
-template <class Edit>
-void editKeys(Clip& clip, double seconds, const Edit& edit) {
-  bool changed = false;
-  eachKind(clip, [&](auto& tracks) {
-    for (auto& track : tracks) {
-      auto keys = keysOf(track);
-      if (!edit(keys)) continue;
-      changed = true;
-      putKeys(track, std::move(keys), track.interpolation);
-    }
-    tracks.erase(std::remove_if(tracks.begin(), tracks.end(), [](const auto& track) { return track.times.empty(); }),
-                 tracks.end());
-  });
-  if (!changed) {
-    throw Error(ErrorCode::kBadArgument, "there is no key at " + std::to_string(seconds) + " s", clip.name);
-  }
-}
-
 }  // namespace
 
 std::vector<double> eachOnce(std::vector<double> times) {
@@ -304,28 +284,6 @@ Clip clipOfKeys(const Skeleton& skeleton, std::span<const Pose> poses, std::span
 
 void setJointKey(Clip& clip, const Skeleton& skeleton, Index joint, const Transform& local, double seconds) {
   setLocal(clip, skeleton, joint, local, requireTime(seconds), keyTimes(clip), interpolationOf(clip));
-}
-
-void moveKey(Clip& clip, double from, double to) {
-  const float start = requireTime(from), end = requireTime(to);
-  editKeys(clip, from, [&](auto& keys) {
-    const std::optional<std::size_t> key = keyAt(keys, start);
-    if (!key) return false;
-    const auto value = keys.values[*key];
-    const auto tangents = keys.tangents[*key];
-    eraseKey(keys, *key);
-    insertKey(keys, end, value, tangents);
-    return true;
-  });
-}
-
-void deleteKey(Clip& clip, double seconds) {
-  const float time = requireTime(seconds);
-  editKeys(clip, seconds, [&](auto& keys) {
-    const std::optional<std::size_t> key = keyAt(keys, time);
-    if (key) eraseKey(keys, *key);
-    return key.has_value();
-  });
 }
 
 void setInterpolation(Clip& clip, Interpolation interpolation) {

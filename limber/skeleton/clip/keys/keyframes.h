@@ -23,7 +23,7 @@ Interpolation interpolationOf(const Clip& clip);
 // The functions below give every track that they change and that is cubic the tangents of a Catmull-Rom spline, at rest
 // in its first and last key; a key whose tangents are others, set by hand or by a file, keeps them. The clip has passed
 // checkClip for `skeleton`, and passes it afterwards. Seconds are finite
-// and not negative, else Error kBadArgument; the same where there is no key to move or to take out.
+// and not negative, else Error kBadArgument.
 
 // All of `pose` at that time, replacing a key that is there. A joint in its rest pose without a track gets none, except
 // for the rotations of roots, so that the key exists; one that gets its first track is in rest pose at the keys that
@@ -36,10 +36,6 @@ void setJointKey(Clip& clip, const Skeleton& skeleton, Index joint, const Transf
 // The clip of linear keys that setKey makes of these poses one by one, but in linear time: at `seconds` (#poses), which
 // rise. Neighbouring rotations lie on one side of the sphere.
 Clip clipOfKeys(const Skeleton& skeleton, std::span<const Pose> poses, std::span<const double> seconds);
-
-// Replaces a key that is at `to` already.
-void moveKey(Clip& clip, double from, double to);
-void deleteKey(Clip& clip, double seconds);
 
 void setInterpolation(Clip& clip, Interpolation interpolation);
 

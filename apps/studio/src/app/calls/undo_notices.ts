@@ -7,7 +7,7 @@ import type { Core } from './core';
 /** Commands after which something is gone, and what is said then. */
 const losses: Record<string, Words> = {
   remove_member: 'The model was taken out of the scene', delete_joint: 'The joint was deleted', remove_clip: 'The clip was removed',
-  delete_key: 'The key was taken out', delete_keys: 'The keys were taken out',
+  delete_keys: 'The keys were taken out',
 };
 
 /** It is shown until it is closed, or something else is done. */
