@@ -52,20 +52,20 @@ constexpr std::array<Parameter, 11> kParameters = {{
     {"upperChest", &HumanoidProportions::upperChest, 0.03},
 }};
 
-struct Character {
+struct FittedCharacter {
   std::string maker;
   BodyVolume body;
   TemplateFit fit;
   std::vector<std::pair<Index, Vec3>> truth;  // joint of the template, position in body space
 };
 
-Character readCharacter(const std::filesystem::path& file) {
+FittedCharacter readCharacter(const std::filesystem::path& file) {
   Asset asset = readAsset(file);
   const Skeleton skeleton = readSkinnedModel(asset).skeleton;
   removeRig(asset);
   const Geometry geometry = collectGeometry(asset);
   const PreparedMesh prepared = prepareGeometry(geometry, geometry.triangles);
-  Character character;
+  FittedCharacter character;
   const std::string stem = file.stem().string();
   character.maker = stem.substr(0, stem.find('_'));
   character.body = measureBody(prepared.mesh);
@@ -80,7 +80,7 @@ Character readCharacter(const std::filesystem::path& file) {
   return character;
 }
 
-double errorOf(const Character& character, const HumanoidProportions& proportions) {
+double errorOf(const FittedCharacter& character, const HumanoidProportions& proportions) {
   const TemplateFit& fit = character.fit;
   std::vector<Vec3> positions = fit.embedding.positions;
   refineHumanoid(fit.skeleton, character.body, fit.frame, fit.pins, positions, proportions);
@@ -91,7 +91,7 @@ double errorOf(const Character& character, const HumanoidProportions& proportion
   return sum / static_cast<double>(std::max<std::size_t>(1, character.truth.size()));
 }
 
-double meanError(const std::vector<const Character*>& characters, const HumanoidProportions& proportions) {
+double meanError(const std::vector<const FittedCharacter*>& characters, const HumanoidProportions& proportions) {
   std::vector<double> errors(characters.size());
   parallelFor(characters.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) errors[c] = errorOf(*characters[c], proportions);
@@ -101,7 +101,7 @@ double meanError(const std::vector<const Character*>& characters, const Humanoid
   return sum;
 }
 
-HumanoidProportions fitted(const std::vector<const Character*>& characters) {
+HumanoidProportions fitted(const std::vector<const FittedCharacter*>& characters) {
   HumanoidProportions best;
   double least = meanError(characters, best);
   for (int round = 0; round < kRounds; ++round) {
@@ -123,9 +123,9 @@ HumanoidProportions fitted(const std::vector<const Character*>& characters) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::vector<Character> characters;
+  std::vector<FittedCharacter> characters;
   std::set<std::string> makers;
-  std::vector<const Character*> all;
+  std::vector<const FittedCharacter*> all;
   try {
     for (int i = 1; i < argc; ++i) characters.push_back(readCharacter(argv[i]));
   } catch (const Error& error) {
@@ -136,7 +136,7 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "usage: limber_fit_template FILE...\n");
     return 1;
   }
-  for (const Character& character : characters) {
+  for (const FittedCharacter& character : characters) {
     makers.insert(character.maker);
     all.push_back(&character);
   }
@@ -150,8 +150,8 @@ int main(int argc, char** argv) {
   }
   double heldOutError = 0;
   for (const std::string& maker : makers) {
-    std::vector<const Character*> others, own;
-    for (const Character* character : all) (character->maker == maker ? own : others).push_back(character);
+    std::vector<const FittedCharacter*> others, own;
+    for (const FittedCharacter* character : all) (character->maker == maker ? own : others).push_back(character);
     if (others.empty()) continue;
     const double error = meanError(own, fitted(others));
     fmt::print("  without {:<12}{:.3f} as it is, {:.3f} by the others' fit ({} files)\n", maker, meanError(own, {}),

@@ -241,8 +241,7 @@ void printConventions() {
 void run(const InfoArguments& options) {
   if (options.conventions) return printConventions();
   if (options.input.empty()) throw CLI::RequiredError("FILE");
-  const Asset asset = readAsset(options.input);
-  const AssetInfo info = inspectAsset(asset);
+  const AssetInfo info = inspectAsset(readAsset(options.input));
   if (options.json) {
     fmt::print("{}\n", dumpReport(infoJson(options.input, info)));
   } else {

@@ -113,7 +113,8 @@ AutoRigReport rigByProgram(Asset& asset, const Adapter& adapter, const AutoRigOp
   try {
     AutoRigReport report;
     Asset rigged = asset.clone();
-    const auto [geometry, figure, pieceOf] = readFigureToRig(rigged, options, report, progress);
+    const FigureToRig toRig = readFigureToRig(rigged, options, report, progress);
+    const FigureSurface& figure = toRig.figure;
     const PreparedMesh& prepared = figure.prepared;
 
     progress.stage("rig");
@@ -136,7 +137,7 @@ AutoRigReport rigByProgram(Asset& asset, const Adapter& adapter, const AutoRigOp
     }
     bindLeftOut(figure, *rig.weights);
     progress.stage("write rig");
-    attachRig(rigged, geometry, movedSkeleton(rig.skeleton, worldOf(prepared.frame)),
+    attachRig(rigged, toRig.geometry(), movedSkeleton(rig.skeleton, worldOf(prepared.frame)),
               expandWeights(*rig.weights, prepared.weldedVertex));
     asset = std::move(rigged);
     completeReport(asset, report, progress);
@@ -155,15 +156,16 @@ Warnings weightsByProgram(Asset& asset, const Adapter& adapter, const WeightOpti
     progress.stage("weights");
     Asset weighed = asset.clone();
     joinBindPoses(weighed);
-    const AssetSkeleton own = readSkeleton(weighed);
-    const Geometry geometry = shapedGeometry(weighed);
+    const Character character(weighed);
+    const AssetSkeleton& own = character.binding();
+    const Geometry& geometry = character.shapedSurface();
     const FigureSurface figure = figureOf(geometry, geometry.triangles);
     const PreparedMesh& prepared = figure.prepared;
     const HandedModel handed = handedModel(prepared.mesh, adapter);
     const Skeleton working = movedSkeleton(own.skeleton, worldOf(prepared.frame).inverse());
     Asset given = meshAsset(handed.mesh);
     attachRig(given, collectGeometry(given), movedSkeleton(working, toHandedSpace(adapter.inputUp, adapter.inputSize)),
-              handedWeights(readWeights(weighed, geometry, own), prepared, handed));
+              handedWeights(character.weights(), prepared, handed));
     const Bytes input = writeGlb(given);
     const ProgramOutput output = runProgram(adapter, {input}, progress);
     ReturnedRig rig = readReturnedRig(output, adapter, prepared.mesh, handed, options.maxInfluences);

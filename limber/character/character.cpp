@@ -1,9 +1,13 @@
 #include "limber/character/character.h"
 
+#include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "limber/core/lazy.h"
 #include "limber/document/clip/motion_io.h"
+#include "limber/document/rig/rest_pose.h"
+#include "limber/document/scene/shape_surface.h"
 
 namespace limber {
 
@@ -14,7 +18,9 @@ struct Character::Readings {
   // Of those with the same surface.
   std::shared_ptr<Lazy<Geometry>> surface = std::make_shared<Lazy<Geometry>>();
   std::shared_ptr<Lazy<SkinWeights>> weights = std::make_shared<Lazy<SkinWeights>>();
+  Lazy<std::optional<Geometry>> shaped;  // none where no node has shapes
   Lazy<std::shared_ptr<const BodySkin>> skin;
+  Lazy<std::optional<Character>> joined;  // none where all skins are bound in one pose
 };
 
 Character::Character(std::shared_ptr<const Asset> document) {
@@ -41,6 +47,7 @@ const AssetSkeleton& Character::binding() const {
 }
 
 const AssetSkeleton& Character::moving() const {
+  if (isMovedBySkin(document()) && !binding().jointNode.empty()) return binding();
   return readings_->moving.get([&] { return animatedSkeleton(document()); });
 }
 
@@ -52,12 +59,33 @@ const Geometry& Character::surface() const {
   return readings_->surface->get([&] { return collectGeometry(document()); });
 }
 
+const Geometry& Character::shapedSurface() const {
+  const Geometry& bound = surface();
+  const std::optional<Geometry>& shaped = readings_->shaped.get([&]() -> std::optional<Geometry> {
+    const ShapeWeights shapes = readShapeWeights(document());
+    if (std::all_of(shapes.begin(), shapes.end(), [](const auto& own) { return own.empty(); })) return std::nullopt;
+    std::optional<Geometry> moved = bound;
+    moveByShapes(document(), shapes, *moved);
+    return moved;
+  });
+  return shaped ? *shaped : bound;
+}
+
 const SkinWeights& Character::weights() const {
   return readings_->weights->get([&] { return readWeights(document(), surface(), binding()); });
 }
 
 std::shared_ptr<const Geometry> Character::sharedSurface() const {
   return {readings_->surface, &surface()};
+}
+
+Character Character::inOneBindPose() const {
+  return readings_->joined
+      .get([&]() -> std::optional<Character> {
+        std::optional<Asset> joined = withJoinedBinds(document());
+        return joined ? std::optional<Character>(std::move(*joined)) : std::nullopt;
+      })
+      .value_or(*this);
 }
 
 Character Character::renamed(Asset document) const {

@@ -15,10 +15,11 @@ namespace limber {
 class Character {
  public:
   explicit Character(std::shared_ptr<const Asset> document);
-  explicit Character(Asset&& document);
-  // Of a document that outlives the character. Until it is destroyed, clips may be added to the document; its nodes,
-  // skins and vertices stay as they are.
-  explicit Character(const Asset& document);
+  // Implicit, as the next: a document is a character of which nothing is read yet.
+  Character(Asset&& document);
+  // Of a document that outlives the character. Clips may be added to it at any time; its nodes, skins and vertices stay
+  // as they are until the last reading is made.
+  Character(const Asset& document);
 
   const Asset& document() const;
 
@@ -36,12 +37,18 @@ class Character {
 
   // collectGeometry: all primitives of the scene in world space, in bind pose. Throws Error as it does.
   const Geometry& surface() const;
+  // shapedGeometry: the same with blend shapes as the nodes have them. Throws Error as it does.
+  const Geometry& shapedSurface() const;
   // readWeights: #S rows over binding(). Throws Error as the two do.
   const SkinWeights& weights() const;
   // The same surface for whoever keeps it.
   std::shared_ptr<const Geometry> sharedSurface() const;
   // How thick the body is about its bones (makeBodySkin).
   const std::shared_ptr<const BodySkin>& skin() const;
+
+  // The character with all skins bound in one pose (withJoinedBinds); this one where they are. What is read from it
+  // lives as long as this one. Throws Error as withJoinedBinds does.
+  Character inOneBindPose() const;
 
   // The character of a document that differs from this one's in names alone: with the surface and the weights that were
   // read.

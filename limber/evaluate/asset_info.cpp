@@ -5,13 +5,8 @@
 #include <set>
 #include <utility>
 
-#include "limber/character/character.h"
 #include "limber/document/clip/motion_io.h"
 #include "limber/document/gltf/accessor.h"
-#include "limber/document/rig/rest_pose.h"
-#include "limber/document/rig/rig_io.h"
-#include "limber/document/scene/geometry.h"
-#include "limber/document/scene/shape_surface.h"
 #include "limber/geometry/mesh/components.h"
 #include "limber/geometry/mesh/prepare.h"
 
@@ -124,23 +119,20 @@ void inspectSize(const Asset& asset, const AssetSkeleton& skeleton, const Skelet
   warnings.append(found);
 }
 
-// The geometry of the scene; empty where it has no triangle.
-Geometry sceneGeometry(const Asset& asset) {
+// Null where the scene has no triangle.
+const Geometry* sceneGeometry(const Character& character) {
   try {
-    const std::optional<Asset> joined = withJoinedBinds(asset);
-    const Asset& whole = joined ? *joined : asset;
-    Geometry geometry = collectGeometry(whole);
-    moveByShapes(whole, readShapeWeights(whole), geometry);
-    return geometry;
+    return &character.inOneBindPose().shapedSurface();
   } catch (const Error& error) {
     if (error.code() != ErrorCode::kBadData) throw;
-    return {};
+    return nullptr;
   }
 }
 
 }  // namespace
 
-AssetInfo inspectAsset(const Asset& asset) {
+AssetInfo inspectAsset(const Character& character) {
+  const Asset& asset = character.document();
   const gltf::Document& document = asset.document;
   const auto count = [](const auto& list) { return static_cast<Index>(list.size()); };
   AssetInfo info;
@@ -157,12 +149,13 @@ AssetInfo inspectAsset(const Asset& asset) {
   info.warnings = asset.warnings;
   info.extensions = document.extensionsUsed;
 
-  const Geometry geometry = sceneGeometry(asset);
-  info.sceneVertices = static_cast<Index>(geometry.positions.size());
-  for (const Vec3f& position : geometry.positions) info.bounds.add(position.cast<double>());
-  if (!geometry.triangles.empty()) info.surface = inspectSurface(geometry);
+  const Geometry* geometry = sceneGeometry(character);
+  if (geometry) {
+    info.sceneVertices = static_cast<Index>(geometry->positions.size());
+    for (const Vec3f& position : geometry->positions) info.bounds.add(position.cast<double>());
+    info.surface = inspectSurface(*geometry);
+  }
   if (!document.skins.empty()) {  // a motion has a skin that no mesh wears
-    const Character character(asset);
     const Skeleton& skeleton = character.binding().skeleton;
     for (const Joint& joint : skeleton.joints) info.joints.push_back(joint.name);
     info.jointPositions = restPositions(skeleton);
@@ -170,7 +163,9 @@ AssetInfo inspectAsset(const Asset& asset) {
     info.anatomy = reading.anatomy();
     info.bodySize = skeletonSize(skeleton, restPose(skeleton), *info.anatomy);
     inspectSize(asset, character.binding(), reading, info.warnings);
-    if (hasRig(asset)) info.weights = inspectWeights(readWeights(asset, geometry, character.binding()));
+    if (character.hasRig()) {
+      info.weights = geometry ? inspectWeights(character.inOneBindPose().weights()) : SkinWeightInfo();
+    }
   }
   return info;
 }

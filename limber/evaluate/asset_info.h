@@ -5,10 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "limber/character/anatomy/anatomy.h"
 #include "limber/character/anatomy/skeleton_size.h"
-#include "limber/core/types.h"
-#include "limber/document/asset.h"
+#include "limber/character/character.h"
 
 namespace limber {
 
@@ -52,8 +50,8 @@ struct AssetInfo {
   Warnings warnings;                    // of reading, and of a body's unlikely size
 };
 
-// The asset must have passed checkAsset. Throws Error kLimit where the scene is too large to be collected.
+// The document must have passed checkAsset. Throws Error kLimit where the scene is too large to be collected.
 // Cost: O(n log n) in its vertices and triangles.
-AssetInfo inspectAsset(const Asset& asset);
+AssetInfo inspectAsset(const Character& character);
 
 }  // namespace limber

@@ -77,17 +77,16 @@ void moveBones(const WorkingFrame& from, const WorkingFrame& to, std::vector<Bon
   }
 }
 
-// The bones of the asset's own skeleton, in the working space.
-std::vector<Bone> keptBones(const Asset& asset, const Geometry& geometry, const AssetSkeleton& skeleton,
-                            const WorkingFrame& frame, Warnings& warnings) {
-  const std::vector<bool> deforms =
-      deformingJoints(readWeights(asset, geometry, skeleton), skeleton.skeleton.jointCount());
+// The bones of the character's own skeleton, in the working space.
+std::vector<Bone> keptBones(const Character& character, const WorkingFrame& frame, Warnings& warnings) {
+  const Skeleton& skeleton = character.binding().skeleton;
+  const std::vector<bool> deforms = deformingJoints(character.weights(), skeleton.jointCount());
   const auto first = std::find(deforms.begin(), deforms.end(), true);
   if (deforms.size() > 1 && std::find(std::next(first), deforms.end(), true) == deforms.end()) {
     warnings.add("single-joint", "one joint alone moves the whole model, as in the file; the others move nothing",
-                 skeleton.skeleton.joints[static_cast<std::size_t>(first - deforms.begin())].name);
+                 skeleton.joints[static_cast<std::size_t>(first - deforms.begin())].name);
   }
-  std::vector<Bone> bones = bonesOf(skeleton.skeleton, deforms);
+  std::vector<Bone> bones = bonesOf(skeleton, deforms);
   moveBones({}, frame, bones);
   return bones;
 }
@@ -153,21 +152,20 @@ struct Rigged {
   std::optional<Skeleton> made;  // in world space; none where the asset's own was kept
   std::optional<Vec3> up;        // of the model, where that is sure
   std::vector<HangingChain> chains;
-  AssetSkeleton kept;
 };
 
 Rigged makeRig(const Asset& asset, const FigureToRig& input, const AutoRigOptions& options, AutoRigReport& report,
                Progress& progress) {
-  const auto& [geometry, figure, pieceOf] = input;
+  const auto& [character, figure, pieceOf] = input;
+  const Geometry& geometry = input.geometry();
   const PreparedMesh& prepared = figure.prepared;
   Rigged result;
   std::vector<Bone> bones;
   Accessories accessories;
   progress.stage("rig");
   if (options.existingRig == ExistingRig::kKeepSkeleton) {
-    result.kept = readSkeleton(asset);
-    bones = keptBones(asset, geometry, result.kept, prepared.frame, report.warnings);
-    report.joints = result.kept.skeleton.jointCount();
+    bones = keptBones(character, prepared.frame, report.warnings);
+    report.joints = character.binding().skeleton.jointCount();
   } else {
     const RiggerMethod& rigger = findRigger(options.rigger);
     if (rigger.looksForLimbs) accessories = findAccessories(asset, geometry);
@@ -245,10 +243,10 @@ AutoRigReport runStages(Asset& asset, const AutoRigOptions& options, Progress& p
 
   progress.stage("write rig");
   if (rig.made) {
-    writeSprings(asset, attachRig(asset, input.geometry, *rig.made, rig.weights), rig.chains);
+    writeSprings(asset, attachRig(asset, input.geometry(), *rig.made, rig.weights), rig.chains);
     if (rig.up) standUpright(asset, *rig.up, options.standUpright, report.warnings);
   } else {
-    replaceWeights(asset, input.geometry, rig.kept, rig.weights);
+    replaceWeights(asset, input.geometry(), input.character.binding(), rig.weights);
   }
   rollback.commit();
   completeReport(asset, report, progress);

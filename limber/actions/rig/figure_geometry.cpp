@@ -3,15 +3,8 @@
 #include <set>
 
 #include "limber/document/rig/rig_io.h"
-#include "limber/document/scene/shape_surface.h"
 
 namespace limber {
-
-Geometry shapedGeometry(const Asset& asset) {
-  Geometry geometry = collectGeometry(asset);
-  moveByShapes(asset, readShapeWeights(asset), geometry);
-  return geometry;
-}
 
 RemovedRig takeRigOut(Asset& asset) {
   std::set<Index> joints;

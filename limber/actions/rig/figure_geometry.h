@@ -14,10 +14,6 @@ inline FigureSurface figureOf(const Geometry& geometry, std::span<const Triangle
   return figureSurface(geometry.positions, triangles, storedVertices(geometry));
 }
 
-// collectGeometry, with blend shapes as the nodes have them (moveByShapes). Where skins are bound in several poses,
-// joinBindPoses comes first.
-Geometry shapedGeometry(const Asset& asset);
-
 // removeRig, and how much of the asset that was.
 struct RemovedRig {
   Index joints = 0, clips = 0;

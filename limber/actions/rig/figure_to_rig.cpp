@@ -31,15 +31,15 @@ FigureToRig readFigureToRig(Asset& asset, const AutoRigOptions& options, AutoRig
     report.removedJoints = removed.joints;
     report.removedClips = removed.clips;
   }
-  FigureToRig result;
-  result.geometry = shapedGeometry(asset);
+  FigureToRig result{Character(asset), {}, {}};
+  const Geometry& geometry = result.geometry();
 
   progress.stage("weld");
-  result.figure = figureOf(result.geometry, result.geometry.triangles);
+  result.figure = figureOf(geometry, geometry.triangles);
   const PreparedMesh& prepared = result.figure.prepared;
   Index pieces = 0;
   result.pieceOf = vertexComponents(prepared.mesh, &pieces);
-  report.sourceVertices = static_cast<Index>(result.geometry.positions.size());
+  report.sourceVertices = static_cast<Index>(geometry.positions.size());
   report.weldedVertices = prepared.mesh.vertexCount();
   report.triangles = prepared.mesh.triangleCount();
   report.pieces = countSolid(prepared.mesh, result.pieceOf, pieces);

@@ -4,15 +4,17 @@
 #include <vector>
 
 #include "limber/actions/rig/auto_rig.h"
-#include "limber/document/scene/geometry.h"
+#include "limber/character/character.h"
 #include "limber/geometry/surface/figure_surface.h"
 
 namespace limber {
 
 struct FigureToRig {
-  Geometry geometry;  // shapedGeometry of the asset
+  Character character;  // of the asset, before it gets the rig
   FigureSurface figure;
   std::vector<Index> pieceOf;  // connected piece of each vertex of the figure's surface
+
+  const Geometry& geometry() const { return character.shapedSurface(); }
 };
 
 // The stages "read geometry" and "weld". Skins of the asset that were bound in several poses are brought to one, and

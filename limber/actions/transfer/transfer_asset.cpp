@@ -19,7 +19,7 @@
 #include "limber/document/rig/rest_pose.h"
 #include "limber/document/rig/rig_io.h"
 #include "limber/document/scene/blend_shapes.h"
-#include "limber/document/scene/geometry.h"
+#include "limber/document/scene/shape_surface.h"
 #include "limber/document/unique_names.h"
 #include "limber/geometry/mesh/face_orientation.h"
 #include "limber/rigging/transfer/offset_transfer.h"
@@ -30,9 +30,12 @@ namespace {
 
 // A model with a rig, as the transfer takes it, and how its vertices came to be those of the body.
 struct SourceModel {
-  Geometry geometry;
+  Character character;
   PreparedMesh prepared;  // without accessories and vertices of no triangle: their weldedVertex is kNoIndex
   RiggedBody body;        // in world space
+
+  const Asset& document() const { return character.document(); }
+  const Geometry& geometry() const { return character.shapedSurface(); }
 };
 
 void dropUnusedVertices(PreparedMesh& prepared) {
@@ -80,19 +83,17 @@ PreparedMesh prepareBody(const Geometry& geometry, const Accessories& accessorie
   return figureOf(geometry, bodyTriangles(geometry, accessories)).prepared;
 }
 
-void checkHasRig(const Asset& source) {
-  if (hasRig(source)) return;
-  throw KnownError(ErrorKind::kNoRig, {ErrorCode::kUnsupported, "has no rig to transfer", source.name,
+void checkHasRig(const Character& source) {
+  if (source.hasRig()) return;
+  throw KnownError(ErrorKind::kNoRig, {ErrorCode::kUnsupported, "has no rig to transfer", source.document().name,
                                        "name the rigged model first, then the one that is to get its rig"});
 }
 
-SourceModel readSource(const Asset& asset, Geometry geometry, const Accessories& accessories) {
-  SourceModel result;
-  result.geometry = std::move(geometry);
-  result.prepared = prepareBody(result.geometry, accessories);
+SourceModel readSource(const Character& character, const Accessories& accessories) {
+  SourceModel result{character, {}, {}};
+  result.prepared = prepareBody(result.geometry(), accessories);
   dropUnusedVertices(result.prepared);
-  AssetSkeleton skeleton = readSkeleton(asset);
-  const SkinWeights weights = readWeights(asset, result.geometry, skeleton);
+  const SkinWeights& weights = character.weights();
   result.body.mesh = result.prepared.mesh;
   for (Vec3f& p : result.body.mesh.positions) p = result.prepared.frame.toSource(p.cast<double>()).cast<float>();
   SkinWeights& welded = result.body.weights;
@@ -106,15 +107,14 @@ SourceModel readSource(const Asset& asset, Geometry geometry, const Accessories&
     std::copy(weights.weightsOf(v).begin(), weights.weightsOf(v).end(), welded.weights.begin() + at);
   }
   normalizeWeights(welded);
-  result.body.skeleton = std::move(skeleton.skeleton);
+  result.body.skeleton = character.binding().skeleton;
   result.body.skeleton.boneShape = BoneShape::kSegment;  // spheres fit the body that they were fitted to
   for (Joint& joint : result.body.skeleton.joints) joint.radius = 0;
   return result;
 }
 
-std::vector<JointLandmark> templateLandmarks(const Asset& sourceAsset, const SourceModel& source,
-                                             const Asset& targetAsset, const Geometry& target, TransferReport& report,
-                                             Progress& progress) {
+std::vector<JointLandmark> templateLandmarks(const SourceModel& source, const Asset& targetAsset,
+                                             const Geometry& target, TransferReport& report, Progress& progress) {
   progress.stage("fit target");
   const std::optional<FittedSkeleton> inTarget = fittedSkeleton(targetAsset, target, progress);
   if (!inTarget) {
@@ -123,7 +123,7 @@ std::vector<JointLandmark> templateLandmarks(const Asset& sourceAsset, const Sou
                       targetAsset.name, "rig it by hand or with limber rig first: its own skeleton then tells"});
   }
   progress.stage("fit source");
-  const std::optional<FittedSkeleton> inSource = fittedSkeleton(sourceAsset, source.geometry, progress);
+  const std::optional<FittedSkeleton> inSource = fittedSkeleton(source.document(), source.geometry(), progress);
   report.landmarksBy = inTarget->name;
   report.confidence = inTarget->confidence;
   if (inSource && inSource->name == inTarget->name) {
@@ -133,17 +133,17 @@ std::vector<JointLandmark> templateLandmarks(const Asset& sourceAsset, const Sou
   return commonLandmarks(source.body.skeleton, inTarget->skeleton);
 }
 
-std::vector<JointLandmark> findLandmarks(const Asset& sourceAsset, const SourceModel& source, const Asset& targetAsset,
-                                         const Geometry& target, const std::optional<Skeleton>& own,
-                                         TransferReport& report, Progress& progress) {
-  if (!own) return templateLandmarks(sourceAsset, source, targetAsset, target, report, progress);
+std::vector<JointLandmark> findLandmarks(const SourceModel& source, const Asset& targetAsset, const Geometry& target,
+                                         const std::optional<Skeleton>& own, TransferReport& report,
+                                         Progress& progress) {
+  if (!own) return templateLandmarks(source, targetAsset, target, report, progress);
   report.landmarksBy = "its own skeleton";
   return commonLandmarks(source.body.skeleton, *own);
 }
 
-std::vector<std::string> transferShapes(const Asset& sourceAsset, const SourceModel& source, const RigTransfer& rig,
-                                        Asset& target, const Geometry& geometry, const FigureSurface& figure) {
-  const std::vector<BlendShape> shapes = readBlendShapes(sourceAsset, source.geometry);
+std::vector<std::string> transferShapes(const SourceModel& source, const RigTransfer& rig, Asset& target,
+                                        const Geometry& geometry, const FigureSurface& figure) {
+  const std::vector<BlendShape> shapes = readBlendShapes(source.document(), source.geometry());
   if (shapes.empty()) return {};
   const PreparedMesh& prepared = figure.prepared;
   const std::vector<Mat3> gradients = deformationGradients(rig.source, rig.registered);
@@ -222,11 +222,11 @@ void freeNames(const Skeleton& skeleton, Asset& target) {
   }
 }
 
-TransferReport runTransfer(const Asset& sourceAsset, Asset& target, const TransferAssetOptions& options,
+TransferReport runTransfer(const Character& giver, Asset& target, const TransferAssetOptions& options,
                            Progress& progress) {
   TransferReport report;
   progress.stage("read geometry");
-  checkHasRig(sourceAsset);
+  checkHasRig(giver);
   std::optional<Skeleton> own;
   if (hasRig(target)) {
     if (options.ownSkeleton) own = readSkeleton(target).skeleton;
@@ -235,10 +235,12 @@ TransferReport runTransfer(const Asset& sourceAsset, Asset& target, const Transf
     report.removedJoints = removed.joints;
     report.removedClips = removed.clips;
   }
-  Geometry sourceGeometry = shapedGeometry(sourceAsset), geometry = shapedGeometry(target);
-  Accessories ofSource = findAccessories(sourceAsset, sourceGeometry), ofTarget = findAccessories(target, geometry);
+  const Geometry& sourceGeometry = giver.shapedSurface();
+  Geometry geometry = shapedGeometry(target);
+  Accessories ofSource = findAccessories(giver.document(), sourceGeometry),
+              ofTarget = findAccessories(target, geometry);
   leaveInCommon(ofSource, ofTarget);
-  const SourceModel source = readSource(sourceAsset, std::move(sourceGeometry), ofSource);
+  const SourceModel source = readSource(giver, ofSource);
   const TargetModel bare = readTarget(std::move(geometry), std::move(ofTarget));
   report.sourceVertices = source.body.mesh.vertexCount();
   report.targetVertices = bare.figure.prepared.mesh.vertexCount();
@@ -248,8 +250,7 @@ TransferReport runTransfer(const Asset& sourceAsset, Asset& target, const Transf
                         fmt::format("{}", fmt::join(hung, ", ")), hung.size());
   }
 
-  std::vector<JointLandmark> landmarks =
-      findLandmarks(sourceAsset, source, target, bare.geometry, own, report, progress);
+  std::vector<JointLandmark> landmarks = findLandmarks(source, target, bare.geometry, own, report, progress);
   report.landmarks = static_cast<Index>(landmarks.size());
 
   progress.stage("transfer");
@@ -261,10 +262,10 @@ TransferReport runTransfer(const Asset& sourceAsset, Asset& target, const Transf
 
   progress.stage("write rig");
   if (options.blendShapes) {
-    report.blendShapes = transferShapes(sourceAsset, source, rig, target, bare.geometry, bare.figure);
+    report.blendShapes = transferShapes(source, rig, target, bare.geometry, bare.figure);
   }
   if (options.colors.at) {
-    const LaidSource laid = {source.geometry, source.prepared, rig};
+    const LaidSource laid = {source.geometry(), source.prepared, rig};
     transferColors(laid, options.colors, target, bare.geometry, bare.figure);
   }
   freeNames(skeleton, target);
@@ -277,13 +278,12 @@ TransferReport runTransfer(const Asset& sourceAsset, Asset& target, const Transf
 
 }  // namespace
 
-TransferReport transferOnto(const Asset& source, Asset& target, const TransferAssetOptions& options,
+TransferReport transferOnto(const Character& source, Asset& target, const TransferAssetOptions& options,
                             Progress& progress) {
   Asset result = target.clone();
   TransferReport report = [&] {
     try {
-      const std::optional<Asset> joined = withJoinedBinds(source);
-      return runTransfer(joined ? *joined : source, result, options, progress);
+      return runTransfer(source.inOneBindPose(), result, options, progress);
     } catch (const Error& error) {
       if (!error.where().empty()) throw;
       throwWithin(error, target.name);

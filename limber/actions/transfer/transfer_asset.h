@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "limber/actions/transfer/transfer_colors.h"
+#include "limber/character/character.h"
 #include "limber/core/progress.h"
-#include "limber/document/asset.h"
 #include "limber/rigging/transfer/rig_transfer.h"
 
 namespace limber {
@@ -40,7 +40,7 @@ struct TransferReport {
 // Where the target has no rig, a template is fitted to both bodies (rigWithTemplate) to tell where the limbs are.
 // Throws Error kUnsupported where the source has no rig or a body has no limbs that can be told, and as the stages do;
 // the target is then as it was. where() begins with an asset's name.
-TransferReport transferOnto(const Asset& source, Asset& target, const TransferAssetOptions& options,
+TransferReport transferOnto(const Character& source, Asset& target, const TransferAssetOptions& options,
                             Progress& progress);
 
 // {"rms", "p95", "worst" (% of the height), "beyond" (part of the surface, 0 to 1), "limit" (% of the height, beyond

@@ -132,10 +132,14 @@ bool isSkeletonAlone(const Asset& asset) {
   return !document.skins.empty() || !document.animations.empty() || document.nodes.size() > 1;
 }
 
+bool isMovedBySkin(const Asset& asset) {
+  return !asset.document.skins.empty() && humanoidNodes(asset.document, kVrmAnimationName).empty();
+}
+
 AssetSkeleton movingSkeleton(const Asset& asset) {
+  if (isMovedBySkin(asset)) return readSkeleton(asset);
   const std::vector<HumanoidNode> bones = humanoidNodes(asset.document, kVrmAnimationName);
   if (!bones.empty()) return vrmAnimationSkeleton(asset.document, bones);
-  if (!asset.document.skins.empty()) return readSkeleton(asset);
   const SceneGraph graph = readSceneGraph(asset.document);
   const std::vector<bool> wanted = movingTree(asset, graph);
   const std::vector<std::string_view> declared = declaredBoneOfNode(asset.document);

@@ -39,6 +39,9 @@ AssetSkeleton animatedSkeleton(const Asset& asset);
 // The same, without joints there.
 AssetSkeleton movingSkeleton(const Asset& asset);
 
+// Is that readSkeleton's: has the document a skin, and is it no VRM motion?
+bool isMovedBySkin(const Asset& asset);
+
 // The clip of that name, in full or behind the last '|' (Blender's exporters put the armature's name before); the first
 // where none is named, and where the document has none an empty one (the rest pose). Over the movingSkeleton of the
 // asset: without tracks where it moves blend shapes alone. Throws Error kBadArgument that lists the names, and as

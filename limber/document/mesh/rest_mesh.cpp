@@ -23,9 +23,7 @@ std::size_t meshesWithShapes(const gltf::Document& document) {
 ExportMesh exportRestMesh(const Asset& asset, Warnings& warnings) {
   const std::optional<Asset> joined = withJoinedBinds(asset);
   const Asset& whole = joined ? *joined : asset;
-  Geometry geometry = collectGeometry(whole);
-  moveByShapes(whole, readShapeWeights(whole), geometry);
-  ExportMesh mesh = exportMesh(whole, geometry);
+  ExportMesh mesh = exportMesh(whole, shapedGeometry(whole));
   if (hasRig(asset)) {
     warnings.add("lost-rig",
                  "joints and weights are left out, and the mesh is in its rest pose (limber pose --bake writes it in "

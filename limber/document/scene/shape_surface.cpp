@@ -129,6 +129,12 @@ void moveByShapes(const Asset& asset, const ShapeWeights& weights, Geometry& geo
   }
 }
 
+Geometry shapedGeometry(const Asset& asset) {
+  Geometry geometry = collectGeometry(asset);
+  moveByShapes(asset, readShapeWeights(asset), geometry);
+  return geometry;
+}
+
 void writeShapeWeights(Asset& asset, const ShapeWeights& weights) {
   for (std::size_t n = 0; n < weights.size(); ++n) {
     if (weights[n].empty()) continue;

@@ -28,6 +28,10 @@ double shapeDuration(const Asset& asset, Index animation);
 void moveByShapes(const Asset& asset, const ShapeWeights& weights, Geometry& geometry,
                   std::vector<Vec3f>* normals = nullptr);
 
+// collectGeometry, with blend shapes as the nodes have them (moveByShapes). Skins that were bound in several poses are
+// where each was: joinBindPoses brings them to one.
+Geometry shapedGeometry(const Asset& asset);
+
 // Lets the nodes have these weights.
 void writeShapeWeights(Asset& asset, const ShapeWeights& weights);
 

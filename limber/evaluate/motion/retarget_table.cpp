@@ -30,11 +30,10 @@ std::vector<RatedCharacter> readCharacters(std::span<const std::filesystem::path
   std::vector<RatedCharacter> characters;
   for (const std::filesystem::path& file : files) {
     try {
-      const Asset asset = readAsset(file);
-      characters.push_back(
-          {file.stem().string(), isHeldOut(file), animatedSkeleton(asset).skeleton, std::nullopt, nullptr});
-      if (!hasRig(asset)) continue;
-      const SkinnedModel& model = characters.back().model.emplace(readSkinnedModel(asset));
+      const Character character(readAsset(file));
+      characters.push_back({file.stem().string(), isHeldOut(file), character.skeleton(), std::nullopt, nullptr});
+      if (!character.hasRig()) continue;
+      const SkinnedModel& model = characters.back().model.emplace(readSkinnedModel(character));
       characters.back().skin = makeBodySkin(model.skeleton, model.mesh.positions, model.weights);
     } catch (const Error& error) {
       skipped.add("unreadable", "characters that cannot be read left out", error.what());

@@ -165,8 +165,9 @@ ModelQuality measureModel(const SkinnedModel& given, std::span<const Vec2f> uvs,
   return quality;
 }
 
-ModelQuality measureModel(const Asset& asset, const Deformer& deformer) {
-  return measureModel(readSkinnedModel(asset), textureCoordinates(asset, collectGeometry(asset)), deformer);
+ModelQuality measureModel(const Character& character, const Deformer& deformer) {
+  return measureModel(readSkinnedModel(character), textureCoordinates(character.document(), character.surface()),
+                      deformer);
 }
 
 Json toJson(const ModelQuality& q) {

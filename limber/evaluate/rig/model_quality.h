@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "limber/deform/linear_blend.h"
-#include "limber/document/asset.h"
 #include "limber/evaluate/rig/joint_placement.h"
 #include "limber/evaluate/skin/surface_stretch.h"
 #include "limber/evaluate/skin/weight_quality.h"
@@ -56,7 +55,7 @@ struct ModelQuality {
 ModelQuality measureModel(const SkinnedModel& model, std::span<const Vec2f> uvs = {},
                           const Deformer& deformer = kLinearBlendDeformer);
 // With the texture coordinates TEXCOORD_0 of the file. Throws Error kUnsupported where it has no rig.
-ModelQuality measureModel(const Asset& asset, const Deformer& deformer = kLinearBlendDeformer);
+ModelQuality measureModel(const Character& character, const Deformer& deformer = kLinearBlendDeformer);
 
 // Every figure by its name; null for what there is not.
 Json toJson(const ModelQuality& quality);

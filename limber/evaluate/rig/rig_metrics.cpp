@@ -133,7 +133,7 @@ RigComparison compareRigs(const SkinnedModel& predicted, const SkinnedModel& tru
   return result;
 }
 
-RigComparison compareRigs(const Asset& predicted, const Asset& truth) {
+RigComparison compareRigs(const Character& predicted, const Character& truth) {
   return compareRigs(readSkinnedModel(predicted), readSkinnedModel(truth));
 }
 

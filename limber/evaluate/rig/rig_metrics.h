@@ -38,7 +38,7 @@ struct RigComparison {
 // such (countedJoints). Without fingers: of both the joints that bodyJoints leaves, so no face, ears or props either.
 // Throws Error kUnsupported where one of the two has no rig.
 RigComparison compareRigs(const SkinnedModel& predicted, const SkinnedModel& truth);
-RigComparison compareRigs(const Asset& predicted, const Asset& truth);
+RigComparison compareRigs(const Character& predicted, const Character& truth);
 
 // The fraction of the joints that lie inside the model's surface: a winding number above a half. Cost: O(#J #F).
 double insideFraction(const SkinnedModel& model);

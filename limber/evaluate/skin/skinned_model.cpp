@@ -1,32 +1,20 @@
 #include "limber/evaluate/skin/skinned_model.h"
 
 #include <algorithm>
-#include <optional>
 #include <utility>
 
-#include "limber/document/rig/rest_pose.h"
-#include "limber/document/rig/rig_io.h"
-#include "limber/document/scene/geometry.h"
-#include "limber/document/scene/shape_surface.h"
 #include "limber/geometry/mesh/prepare.h"
 
 namespace limber {
 
-SkinnedModel readSkinnedModel(const Asset& given) {
-  if (!hasRig(given)) {
-    throw Error(ErrorCode::kUnsupported, "has no skin weights to compare", given.name, "rig it first: limber rig");
+SkinnedModel readSkinnedModel(const Character& character) {
+  if (!character.hasRig()) {
+    throw Error(ErrorCode::kUnsupported, "has no skin weights to compare", character.document().name,
+                "rig it first: limber rig");
   }
-  const std::optional<Asset> joined = withJoinedBinds(given);
-  const Asset& asset = joined ? *joined : given;
-  Geometry geometry = collectGeometry(asset);
-  moveByShapes(asset, readShapeWeights(asset), geometry);
-  AssetSkeleton skeleton = readSkeleton(asset);
-  SkinnedModel result;
-  result.weights = readWeights(asset, geometry, skeleton);
-  result.skeleton = std::move(skeleton.skeleton);
-  result.stored = storedVertices(geometry);
-  result.mesh = {std::move(geometry.positions), std::move(geometry.triangles)};
-  return result;
+  const Character whole = character.inOneBindPose();
+  const Geometry& surface = whole.shapedSurface();
+  return {{surface.positions, surface.triangles}, whole.binding().skeleton, whole.weights(), storedVertices(surface)};
 }
 
 SkinnedModel weldedModel(const SkinnedModel& model) {

@@ -3,13 +3,12 @@
 
 #include <vector>
 
+#include "limber/character/character.h"
 #include "limber/geometry/mesh/tri_mesh.h"
 #include "limber/geometry/mesh/weld.h"
 #include "limber/skeleton/skin_weights.h"
 
 namespace limber {
-
-struct Asset;
 
 struct SkinnedModel {
   TriMesh mesh;  // vertices as the file has them, not welded, in bind pose
@@ -18,9 +17,8 @@ struct SkinnedModel {
   std::vector<StoredVertices> stored;  // how exactly the vertices are known, for prepareMesh
 };
 
-// The surface with blend shapes as the nodes have them, and in one bind pose (withJoinedBinds). Throws Error
-// kUnsupported where the asset has no rig.
-SkinnedModel readSkinnedModel(const Asset& asset);
+// The shaped surface in one bind pose. Throws Error kUnsupported where the character has no rig.
+SkinnedModel readSkinnedModel(const Character& character);
 
 // The model with one vertex for each position, that of the lowest vertex there, whose weights it has to a sum of 1, and
 // without degenerate triangles. Errors and cost of prepareMesh.

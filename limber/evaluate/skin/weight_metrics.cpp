@@ -219,7 +219,7 @@ WeightComparison compareWeights(const SkinnedModel& result, const SkinnedModel& 
   return report;
 }
 
-WeightComparison compareWeights(const Asset& result, const Asset& truth) {
+WeightComparison compareWeights(const Character& result, const Character& truth) {
   return compareWeights(readSkinnedModel(result), readSkinnedModel(truth));
 }
 

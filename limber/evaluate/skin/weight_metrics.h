@@ -32,7 +32,7 @@ struct WeightComparison {
 // Weights of both are cut to the four strongest of each vertex, to a sum of 1, as glTF readers do. Throws Error
 // kUnsupported where one of the two has no rig, kBadData where no vertex of the one lies on a vertex of the other.
 WeightComparison compareWeights(const SkinnedModel& result, const SkinnedModel& truth);
-WeightComparison compareWeights(const Asset& result, const Asset& truth);
+WeightComparison compareWeights(const Character& result, const Character& truth);
 
 // The four strongest influences of each vertex, strongest first, to a sum of 1; all 0 where there was none.
 SkinWeights strongestFour(const SkinWeights& weights);
