@@ -251,7 +251,9 @@ Asset withClips(std::optional<Asset>& model, Motion& motion, const ConvertArgume
   asset.warnings = {};  // the motion has them
   reports = editClips(asset, names, options.clipEdits.edits);
   motion.warnings.append(asset.warnings);
-  const std::vector<Clip> clips = readClips(asset, animatedSkeleton(asset), asset.warnings);
+  Motion edited = motionOf(asset);
+  asset.warnings = std::move(edited.warnings);
+  const std::vector<Clip>& clips = edited.clips;
   motion.clips.assign(clips.end() - static_cast<std::ptrdiff_t>(motion.clips.size()), clips.end());
   return asset;
 }
@@ -354,7 +356,7 @@ void run(ConvertArguments options) {
       read = readMotion(file, reading);
     } else {
       Asset asset = readAsset(file);
-      read = motionOf(asset, needsJoints(options) ? animatedSkeleton(asset) : movingSkeleton(asset));
+      read = needsJoints(options) ? motionOf(asset) : motionOf(asset, movingSkeleton(asset));
       if (!motion && asset.format != "bvh" && asset.format != "npz") model = std::move(asset);
     }
     if (motion) {

@@ -93,9 +93,8 @@ class FileNames {
 };
 
 // A file for each part: OUT_PART.stl.
-void writePartFiles(const Asset& asset, const std::vector<PartNodes>& parts, const PartsArguments& options,
+void writePartFiles(const Character& written, const std::vector<PartNodes>& parts, const PartsArguments& options,
                     const Account& account) {
-  const Geometry geometry = collectGeometry(asset);
   const fs::path output = options.output;
   const bool stl = lowerExtension(output) == ".stl";
   FileNames names;
@@ -105,7 +104,7 @@ void writePartFiles(const Asset& asset, const std::vector<PartNodes>& parts, con
     fs::path path = output;
     path.replace_filename(output.stem().string() + "_" + name + output.extension().string());
     checkBeside("--output", path.string(), {options.input});
-    const ExportMesh mesh = exportMesh(asset, geometryOf(geometry, part.nodes));
+    const ExportMesh mesh = exportMesh(written.document(), geometryOf(written.surface(), part.nodes));
     files.emplace_back(path, stl ? encodeStl(mesh) : encodePly(mesh));
   }
   std::vector<OutputFile> outputs;
@@ -115,14 +114,14 @@ void writePartFiles(const Asset& asset, const std::vector<PartNodes>& parts, con
   for (const auto& [path, bytes] : files) account.line(fmt::format("written: {}", path.string()));
 }
 
-void write(const Asset& asset, const std::vector<PartNodes>& nodes, const PartsArguments& options,
+void write(const Character& written, const std::vector<PartNodes>& nodes, const PartsArguments& options,
            const Account& account) {
   const std::string extension = lowerExtension(options.output);
-  if (extension == ".stl" || extension == ".ply") return writePartFiles(asset, nodes, options, account);
+  if (extension == ".stl" || extension == ".ply") return writePartFiles(written, nodes, options, account);
   if (extension == ".obj") {
-    writeMesh(exportMesh(asset, collectGeometry(asset)), options.output);
+    writeMesh(exportMesh(written.document(), written.surface()), options.output);
   } else {
-    writeAsset(asset, options.output);
+    writeAsset(written.document(), options.output);
   }
   if (options.output != "-") account.line(fmt::format("written: {}", options.output));
 }
@@ -150,9 +149,10 @@ void run(const PartsArguments& options) {
   TerminalProgress progress(options.common.quiet);
   progress->stage("read");
   Asset asset = readAsset(options.input);
-  const Geometry geometry = collectGeometry(asset);
+  const Character character(asset);
+  const Geometry& geometry = character.surface();
   progress->stage("parts");
-  const SurfaceParts parts = modelParts(asset, geometry, method, *progress);
+  const SurfaceParts parts = modelParts(character, method, *progress);
   progress->stage("write");
   std::vector<PartNodes> nodes;
   if (options.split) {

@@ -100,13 +100,10 @@ std::optional<JointLimits> readLimits(const std::string& file, const Skeleton& s
   }
 }
 
-// As the file's nodes stand, or as at a moment of a clip.
-Pose startPose(Asset& asset, const AssetSkeleton& skeleton, const PoseArguments& options) {
-  if (!options.clip && !options.seconds) return readNodePose(asset, skeleton);
-  const ClipMoment moment{options.clip.value_or(""), options.seconds.value_or(0)};
-  const Pose pose = poseAt(asset, skeleton, moment);
-  writeShapeWeights(asset, shapesAt(asset, moment));
-  return pose;
+// None: as the file's nodes stand.
+std::optional<ClipMoment> momentOf(const PoseArguments& options) {
+  if (!options.clip && !options.seconds) return std::nullopt;
+  return ClipMoment{options.clip.value_or(""), options.seconds.value_or(0)};
 }
 
 // As heavy as the skin says, where there is one: only balance asks.
@@ -140,7 +137,9 @@ Warnings writeModelInPose(const Asset& asset, const std::string& file) {
   return writeModel(asset, file, still);
 }
 
-Warnings writeResult(Asset& asset, const AssetSkeleton& skeleton, const Pose& pose, const PoseArguments& options) {
+// character  of the asset as it is
+Warnings writeResult(Asset& asset, const Character& character, const Pose& pose, const PoseArguments& options) {
+  const AssetSkeleton& skeleton = character.binding();
   if (isPoseFile(options.output)) {
     writePose(asset, skeleton, pose, options.output);
     return {};
@@ -149,12 +148,12 @@ Warnings writeResult(Asset& asset, const AssetSkeleton& skeleton, const Pose& po
     options.setRest ? setRestPose(asset, skeleton, pose) : writeNodePose(asset, skeleton, pose);
     return writeModelInPose(asset, options.output);
   }
-  const PosedGeometry posed = posedGeometry(asset, skeleton, pose, findDeformer(options.deformer));
+  const PosedGeometry posed = posedGeometry(character, skeleton, pose, findDeformer(options.deformer));
   if (isMeshFormat(options.output)) {
     writeMesh(exportMesh(asset, posed.geometry), options.output);
     return {};
   }
-  freezeGeometry(asset, collectGeometry(asset), posed.geometry.positions, posed.normals);
+  freezeGeometry(asset, character.surface(), posed.geometry.positions, posed.normals);
   return writeModelInPose(asset, options.output);
 }
 
@@ -174,9 +173,11 @@ void run(PoseArguments options) {
   if (!hasRig(asset)) {
     throw Error(ErrorCode::kBadArgument, "the model has no rig to pose", asset.name, "limber rig gives it one");
   }
+  const std::optional<ClipMoment> moment = momentOf(options);
+  if (moment) writeShapeWeights(asset, shapesAt(asset, *moment));
   const Character character(asset);
   const AssetSkeleton& skeleton = character.binding();
-  Pose pose = startPose(asset, skeleton, options);
+  Pose pose = moment ? poseAt(asset, skeleton, *moment) : readNodePose(asset, skeleton);
   progress->stage("pose");
   if (!options.applied.empty()) pose = putPose(portablePose(options.applied), skeleton.skeleton, pose);
   const std::optional<JointLimits> limits = readLimits(options.limitsFile, skeleton.skeleton);
@@ -188,7 +189,7 @@ void run(PoseArguments options) {
                        {options.pose.ik, massesFor(edits, character)});
   }
   progress->stage("write");
-  const Warnings written = writeResult(asset, skeleton, pose, options);
+  const Warnings written = writeResult(asset, character, pose, options);
   Warnings warnings = asset.warnings;
   warnings.append(written);
   progress.finish();

@@ -112,9 +112,10 @@ Bytes turntable(const Asset& asset, const SceneMaker& scenes, const PreviewArgum
 
 // In their order the `count` poses that stretch the surface the most by linear blending, so that deformers are shown in
 // the same ones.
-std::vector<RangeOfMotionPose> worstOf(std::vector<RangeOfMotionPose> range, std::size_t count, const Asset& asset) {
+std::vector<RangeOfMotionPose> worstOf(std::vector<RangeOfMotionPose> range, std::size_t count,
+                                       const Character& character) {
   if (range.size() <= count) return range;
-  const SceneMaker scenes(asset);
+  const SceneMaker scenes(character);
   std::vector<std::pair<double, std::size_t>> order;
   for (std::size_t i = 0; i < range.size(); ++i) {
     const Scene scene = scenes.at(range[i].pose);
@@ -129,19 +130,19 @@ std::vector<RangeOfMotionPose> worstOf(std::vector<RangeOfMotionPose> range, std
 }
 
 // A sheet of a range of motion test, whatever clips there are.
-Bytes rangePicture(const Asset& asset, const SceneMaker& scenes, int worst, const PreviewOptions& preview,
+Bytes rangePicture(const Character& character, const SceneMaker& scenes, int worst, const PreviewOptions& preview,
                    Warnings& warnings) {
-  if (!hasRig(asset)) {
+  const Asset& asset = character.document();
+  if (!character.hasRig()) {
     throw Error(ErrorCode::kUnsupported, "has no rig by which it could be stretched", asset.name,
                 "make one with limber rig");
   }
-  const Character character(asset);
   std::vector<RangeOfMotionPose> range = rangeOfMotion(character.skeleton(), character.anatomy());
   if (range.empty()) {
     throw Error(ErrorCode::kUnsupported, "has no part of a body that could be bent", asset.name,
                 "name a clip by --clip, and --time or --frames");
   }
-  if (worst > 0) range = worstOf(std::move(range), static_cast<std::size_t>(worst), asset);
+  if (worst > 0) range = worstOf(std::move(range), static_cast<std::size_t>(worst), character);
   checkPixels(range.size(), preview);
   std::vector<Image> images;
   for (const RangeOfMotionPose& one : range) {
@@ -183,20 +184,21 @@ void run(PreviewArguments options) {
 
   TerminalProgress progress(options.common.quiet);
   progress->stage("read");
-  const Asset asset = readAsset(options.input);
+  const Character character(readAsset(options.input));
+  const Asset& asset = character.document();
   if (preview.show == PreviewShow::kParts) {
     progress->stage("parts");
-    preview.partOf = modelParts(asset, collectGeometry(asset), options.parts.options(), *progress).partOf;
+    preview.partOf = modelParts(character, options.parts.options(), *progress).partOf;
   }
   progress->stage("draw");
   Warnings warnings;
   const auto draw = [&] {
-    const SceneMaker scenes(asset, deformer);
+    const SceneMaker scenes(character, deformer);
     const bool isAsked = options.rest || isRange || showsClip(options);
     if (!isAsked && beginsWithClip(asset, scenes)) options.time = 0;
     if (options.turntable) return turntable(asset, scenes, options, preview, *progress, warnings);
     if (showsClip(options)) return clipPicture(asset, scenes, options, preview, *progress, warnings);
-    if (isRange) return rangePicture(asset, scenes, options.worst, preview, warnings);
+    if (isRange) return rangePicture(character, scenes, options.worst, preview, warnings);
     return stillPicture(scenes, preview, warnings);
   };
   const Bytes png = draw();

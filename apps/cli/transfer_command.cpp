@@ -86,7 +86,8 @@ void runTransferCommand(TransferArguments options) {
   options.transfer.ownSkeleton = !options.ignoreRig;
   TerminalProgress progress(options.common.quiet);
   progress->stage("read");
-  const Asset source = readSource(options.source);
+  const Character character(readSource(options.source));
+  const Asset& source = character.document();
   Asset target = readAsset(options.target);
   std::optional<SurfaceColors> colors;
   if (options.colors) {
@@ -94,11 +95,11 @@ void runTransferCommand(TransferArguments options) {
       throw Error(ErrorCode::kUnsupported, "has no colours: no texture, no base colour, none at its vertices",
                   options.source, "leave out --colors");
     }
-    colors.emplace(source);
+    colors.emplace(character);
     options.transfer.colors.at = [&](Index triangle, const Vec3& weights) { return colors->at(triangle, weights); };
     if (options.transfer.colors.pictureSize > 0) options.transfer.colors.picture = pngOfColors;
   }
-  TransferReport report = transferOnto(source, target, options.transfer, *progress);
+  TransferReport report = transferOnto(character, target, options.transfer, *progress);
   if (colors) report.warnings.append(colors->warnings());
   report.warnings.append(source.warnings);
   if (options.strict) refuseWarnings(report.warnings);

@@ -317,7 +317,7 @@ class Model {
     std::vector<Vec3f> positions;
     {
       const py::gil_scoped_release release;
-      positions = std::move(posedGeometry(character.document(), own, pose, findDeformer(deformer)).geometry.positions);
+      positions = std::move(posedGeometry(character, own, pose, findDeformer(deformer)).geometry.positions);
     }
     return arrayOf<float>(std::move(positions), 3);
   }
@@ -349,7 +349,7 @@ class Model {
     const Character character = character_;
     {
       const py::gil_scoped_release release;
-      measured = measureModel(character.document());
+      measured = measureModel(character);
     }
     return pythonOf(toJson(measured));
   }

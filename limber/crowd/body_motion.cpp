@@ -89,10 +89,10 @@ BodyMotion moveBuild(const Asset& character, const BodyBuild& build, std::span<c
     }
     editClips(asset, names, options.edits);
     Warnings ofKeys;
-    const AssetSkeleton animated = animatedSkeleton(asset);  // clips may have got a root joint
-    const StandingBody standing = standingBody(built.surface(), animated.skeleton, retarget.turn);
+    body.skeleton = animatedSkeleton(asset);  // clips may have got a root joint
+    const StandingBody standing = standingBody(built.surface(), body.skeleton.skeleton, retarget.turn);
     body.width = std::max(standing.box.size().x(), standing.box.size().z());
-    for (Clip& clip : readClips(asset, animated, ofKeys)) {
+    for (Clip& clip : readClips(asset, body.skeleton, ofKeys)) {
       const Index cycle = std::max<Index>(1, frameCount(clip, options.framesPerSecond) - 1);
       const Vec3 start = startOf(standing, clip);
       body.clips.push_back({std::move(clip), cycle, start});
@@ -106,19 +106,19 @@ BodyMotion moveBuild(const Asset& character, const BodyBuild& build, std::span<c
 }
 
 void lengthenClips(BodyMotion& body, Index frames, double framesPerSecond) {
-  const AssetSkeleton character = animatedSkeleton(body.moving);
+  const Skeleton& skeleton = body.skeleton.skeleton;
   std::vector<Clip> lengthened;
   for (const BodyClip& one : body.clips) {
-    const PoseSequence once = sampleFrames(character.skeleton, one.clip, framesPerSecond);
+    const PoseSequence once = sampleFrames(skeleton, one.clip, framesPerSecond);
     PoseSequence all;
     all.frameSeconds = once.frameSeconds;
     for (std::size_t f = 0; f < std::size_t{frames} + one.cycle; ++f) all.poses.push_back(once.poses[f % one.cycle]);
-    Clip clip = clipOf(character.skeleton, all, one.clip.name);
+    Clip clip = clipOf(skeleton, all, one.clip.name);
     keepOneKeyOfStill(clip.translations);
     keepOneKeyOfStill(clip.rotations);
     lengthened.push_back(std::move(clip));
   }
-  addClips(body.moving, character, lengthened);
+  addClips(body.moving, body.skeleton, lengthened);
 }
 
 }  // namespace limber

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "limber/document/asset.h"
+#include "limber/document/rig/rig_io.h"
 #include "limber/skeleton/clip/clip.h"
 
 namespace limber {
@@ -22,10 +22,11 @@ struct BodyClip {
 };
 
 struct BodyMotion {
-  Index character = 0;  // by its number
-  Asset still;          // the build without clips
-  Asset moving;         // with an animation for each clip, once lengthened
-  double width = 0;     // at rest, metres
+  Index character = 0;     // by its number
+  Asset still;             // the build without clips
+  Asset moving;            // with an animation for each clip, once lengthened
+  AssetSkeleton skeleton;  // of `moving`
+  double width = 0;        // at rest, metres
   std::vector<BodyClip> clips;
 };
 

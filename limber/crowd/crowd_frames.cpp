@@ -8,11 +8,11 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "limber/character/character.h"
 #include "limber/core/error.h"
 #include "limber/crowd/crowd_note.h"
 #include "limber/document/clip/clip_io.h"
 #include "limber/document/gltf/json_access.h"
-#include "limber/document/rig/rig_io.h"
 #include "limber/document/scene/node_edit.h"
 #include "limber/document/scene/scene_graph.h"
 #include "limber/skeleton/pose.h"
@@ -47,11 +47,10 @@ class TableFiller {
       : asset_(asset), table_(table), animation_(animation) {}
 
   void add(const CrowdMember& member) {
-    const Asset alone = crowdMemberAlone(asset_, member);
-    const AssetSkeleton binding = readSkeleton(alone);
-    const Skeleton& skeleton = binding.skeleton;
+    const Character alone(crowdMemberAlone(asset_, member));
+    const Skeleton& skeleton = alone.binding().skeleton;
     Warnings ignored;
-    const std::vector<Clip> clips = readClips(alone, binding, ignored);
+    const std::vector<Clip> clips = readClips(alone.document(), alone.binding(), ignored);
     if (clips.empty()) failAt(asset_, member.node, "the body does not move");
     if (table_.joints == 0) makeRoom(skeleton.jointCount());
     if (table_.joints != skeleton.jointCount()) failAt(asset_, member.node, "the body has other joints than its build");

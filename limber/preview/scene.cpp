@@ -2,11 +2,9 @@
 
 #include <algorithm>
 
-#include "limber/document/clip/motion_io.h"
 #include "limber/document/gltf/accessor.h"
 #include "limber/document/rig/pose_io.h"
 #include "limber/document/rig/weight_attributes.h"
-#include "limber/document/scene/geometry.h"
 #include "limber/preview/image/palette.h"
 #include "limber/preview/scene_materials.h"
 #include "limber/preview/shapes.h"
@@ -47,12 +45,12 @@ void colorInstance(const Asset& asset, const PrimitiveInstance& instance, bool i
 }
 
 // The joints and bones of a skeleton in a pose.
-void addSkeleton(const Skeleton& skeleton, const Pose& pose, Scene& scene) {
-  Skeleton posed = skeleton;
+void addSkeleton(const Character& character, const Pose& pose, Scene& scene) {
+  Skeleton posed = character.skeleton();
   for (Index j = 0; j < posed.jointCount(); ++j) posed.joints[j].rest = pose.locals[j];
   posed.boneShape = BoneShape::kSegment;
   const std::vector<Affine> globals = restGlobals(posed);
-  const Anatomy anatomy = readAnatomy(skeleton);
+  const Anatomy& anatomy = character.anatomy();
   for (Index j = 0; j < posed.jointCount(); ++j) {
     const Joint& joint = posed.joints[j];
     SceneJoint& shown =
@@ -78,9 +76,9 @@ void addSurface(const Asset& asset, Geometry geometry, Scene& scene) {
 }
 
 // A skeleton without a mesh: its bones are what is seen.
-Scene boneScene(const Skeleton& skeleton, const Pose& pose) {
+Scene boneScene(const Character& character, const Pose& pose) {
   Scene scene;
-  addSkeleton(skeleton, pose, scene);
+  addSkeleton(character, pose, scene);
   Box box;
   for (const SceneJoint& joint : scene.joints) box.add(joint.position);
   ShapeMesh shapes;
@@ -100,41 +98,42 @@ Scene boneScene(const Skeleton& skeleton, const Pose& pose) {
 
 }  // namespace
 
-SceneMaker::SceneMaker(const Asset& asset, const Deformer& deformer) : asset_(asset) {
-  const bool isRigged = hasRig(asset);
-  if (isRigged || isSkeletonAlone(asset)) skeleton_ = animatedSkeleton(asset);
-  if (!isRigged) return;
-  poser_ = std::make_unique<AssetPoser>(asset, skeleton_, deformer);
-  boundPositions_ = poser_->posed(restPose(skeleton_.skeleton)).geometry.positions;
+SceneMaker::SceneMaker(const Character& character, const Deformer& deformer) : character_(character) {
+  if (character.hasRig()) poser_ = std::make_unique<AssetPoser>(character, character.moving(), deformer);
+  if (poser_) boundPositions_ = poser_->posed(restPose(character.skeleton())).geometry.positions;
+  if (hasSkeleton()) character.moving();  // throws where it has no joints
 }
 
 Scene SceneMaker::at(const Pose& pose) const {
-  return at(pose, readShapeWeights(asset_));
+  return at(pose, readShapeWeights(character_.document()));
 }
 
 Scene SceneMaker::at(const Pose& pose, const ShapeWeights& shapes) const {
-  if (!poser_) throw Error(ErrorCode::kUnsupported, "has no rig to pose", asset_.name, "rig it first: limber rig");
+  const Asset& asset = character_.document();
+  if (!poser_) throw Error(ErrorCode::kUnsupported, "has no rig to pose", asset.name, "rig it first: limber rig");
   Scene scene;
   Geometry geometry = poser_->posed(pose, shapes).geometry;
-  addSkeleton(skeleton_.skeleton, pose, scene);
+  addSkeleton(character_, pose, scene);
   scene.weights = poser_->weights();
   scene.boundPositions = boundPositions_;
-  addSurface(asset_, std::move(geometry), scene);
+  addSurface(asset, std::move(geometry), scene);
   return scene;
 }
 
 Scene SceneMaker::still() const {
-  if (poser_) return at(readNodePose(asset_, skeleton_));
-  if (isSkeletonAlone(asset_)) return boneScene(skeleton_.skeleton, readNodePose(asset_, skeleton_));
-  return unrigged(readShapeWeights(asset_));
+  const Asset& asset = character_.document();
+  if (!hasSkeleton()) return unrigged(readShapeWeights(asset));
+  const Pose pose = readNodePose(asset, character_.moving());
+  return poser_ ? at(pose) : boneScene(character_, pose);
 }
 
 bool SceneMaker::isAtRest() const {
   // Of single precision and inverse binds, seen in files; a pose that is meant moves joints by more.
   constexpr double kRounding = 1e-3;  // of the skeleton's diagonal, and of a unit vector
-  if (skeleton_.jointNode.empty()) return true;
-  const std::vector<Affine> rest = restGlobals(skeleton_.skeleton);
-  const std::vector<Affine> now = poseGlobals(skeleton_.skeleton, readNodePose(asset_, skeleton_));
+  if (!hasSkeleton()) return true;
+  const AssetSkeleton& moving = character_.moving();
+  const std::vector<Affine> rest = restGlobals(moving.skeleton);
+  const std::vector<Affine> now = poseGlobals(moving.skeleton, readNodePose(character_.document(), moving));
   Box box;
   for (const Affine& joint : rest) box.add(joint.translation());
   for (std::size_t j = 0; j < rest.size(); ++j) {
@@ -147,35 +146,37 @@ bool SceneMaker::isAtRest() const {
 
 Scene SceneMaker::unrigged(const ShapeWeights& shapes) const {
   Scene scene;
-  Geometry geometry = collectGeometry(asset_);
-  moveByShapes(asset_, shapes, geometry);
-  addSurface(asset_, std::move(geometry), scene);
+  Geometry geometry = character_.surface();
+  moveByShapes(character_.document(), shapes, geometry);
+  addSurface(character_.document(), std::move(geometry), scene);
   return scene;
 }
 
 double SceneMaker::duration(const Clip& clip) const {
-  const std::optional<Index> animation = animationNamed(asset_.document, clip.name);
-  return std::max(clip.duration(), animation ? shapeDuration(asset_, *animation) : 0);
+  const Asset& asset = character_.document();
+  const std::optional<Index> animation = animationNamed(asset.document, clip.name);
+  return std::max(clip.duration(), animation ? shapeDuration(asset, *animation) : 0);
 }
 
 Scene SceneMaker::at(const Clip& clip, double seconds) const {
-  const ShapeWeights shapes = readShapeWeights(asset_, animationNamed(asset_.document, clip.name), seconds);
-  if (!poser_ && !isSkeletonAlone(asset_)) {
+  const Asset& asset = character_.document();
+  const ShapeWeights shapes = readShapeWeights(asset, animationNamed(asset.document, clip.name), seconds);
+  if (!hasSkeleton()) {
     if (clip.translations.empty() && clip.rotations.empty() && clip.scales.empty()) return unrigged(shapes);
     throw Error(ErrorCode::kUnsupported, "its clips move meshes without a skeleton, which limber does not draw",
-                asset_.name);
+                asset.name);
   }
-  Pose pose = restPose(skeleton_.skeleton);
+  Pose pose = restPose(character_.skeleton());
   sampleClip(clip, seconds, pose);
-  return poser_ ? at(pose, shapes) : boneScene(skeleton_.skeleton, pose);
+  return poser_ ? at(pose, shapes) : boneScene(character_, pose);
 }
 
-Scene makeScene(const Asset& asset) {
-  return SceneMaker(asset).still();
+Scene makeScene(const Character& character) {
+  return SceneMaker(character).still();
 }
 
-Scene sceneAt(const Asset& asset, const Clip& clip, double seconds) {
-  return SceneMaker(asset).at(clip, seconds);
+Scene sceneAt(const Character& character, const Clip& clip, double seconds) {
+  return SceneMaker(character).at(clip, seconds);
 }
 
 }  // namespace limber

@@ -7,8 +7,9 @@
 #include <vector>
 
 #include "limber/actions/pose/pose_asset.h"
-#include "limber/character/anatomy/anatomy.h"
+#include "limber/character/character.h"
 #include "limber/core/error.h"
+#include "limber/document/clip/motion_io.h"
 #include "limber/preview/image/texture.h"
 #include "limber/skeleton/skin_weights.h"
 
@@ -51,33 +52,33 @@ struct Scene {
 // The model as its file shows it before any clip plays: a rigged one in the pose in which its joints' nodes stand; a
 // skeleton without a mesh as its bones.
 // Colours are the materials' base colours times vertex colours times base colour textures.
-Scene makeScene(const Asset& asset);
+Scene makeScene(const Character& character);
 
-// The same at a moment of a clip over the asset's movingSkeleton, with blend shapes as the asset's animation of the
-// clip's name has them. Throws Error kUnsupported where meshes move without a skin.
-Scene sceneAt(const Asset& asset, const Clip& clip, double seconds);
+// The same at a moment of a clip over the document's movingSkeleton, with blend shapes as its animation of the clip's
+// name has them. Throws Error kUnsupported where meshes move without a skin.
+Scene sceneAt(const Character& character, const Clip& clip, double seconds);
 
-// Both for an asset of which several pictures are made: what its deformer prepares is prepared once. The asset must
-// outlive it.
+// Both for a character of which several pictures are made: what its deformer prepares is prepared once.
 class SceneMaker {
  public:
-  explicit SceneMaker(const Asset& asset, const Deformer& deformer = kLinearBlendDeformer);
+  explicit SceneMaker(const Character& character, const Deformer& deformer = kLinearBlendDeformer);
 
   Scene still() const;
   // Do the joints' nodes have the rest pose? True without a rig. False where a pose was saved, which still() shows.
   bool isAtRest() const;
   Scene at(const Clip& clip, double seconds) const;
   double duration(const Clip& clip) const;  // seconds, with the blend shapes of its name
-  // In a pose of animatedSkeleton(asset), which must be rigged.
+  // In a pose of the character's moving(); it must be rigged.
   Scene at(const Pose& pose) const;
 
  private:
   Scene at(const Pose& pose, const ShapeWeights& shapes) const;
   Scene unrigged(const ShapeWeights& shapes) const;
 
-  const Asset& asset_;
-  AssetSkeleton skeleton_;             // of a rigged asset, or a skeleton alone
-  std::unique_ptr<AssetPoser> poser_;  // of a rigged asset
+  bool hasSkeleton() const { return poser_ || isSkeletonAlone(character_.document()); }
+
+  Character character_;
+  std::unique_ptr<AssetPoser> poser_;  // of a rigged one
   std::vector<Vec3f> boundPositions_;
 };
 

@@ -17,7 +17,7 @@ bool hasColors(const Asset& asset) {
   return false;
 }
 
-SurfaceColors::SurfaceColors(const Asset& asset) : scene_(makeScene(asset)) {}
+SurfaceColors::SurfaceColors(const Character& character) : scene_(makeScene(character)) {}
 
 Vec3f SurfaceColors::at(Index triangle, const Vec3& weights) const {
   const Triangle& corners = scene_.triangles[triangle];

@@ -14,9 +14,9 @@ bool hasColors(const Asset& asset);
 // Base colours times vertex colours times base colour textures, as makeScene has them, in their full sharpness.
 class SurfaceColors {
  public:
-  explicit SurfaceColors(const Asset& asset);
+  explicit SurfaceColors(const Character& character);
 
-  // triangle  of collectGeometry(asset); weights of its corners, sum 1. Linear RGB.
+  // triangle  of the character's surface; weights of its corners, sum 1. Linear RGB.
   Vec3f at(Index triangle, const Vec3& weights) const;
 
   const Warnings& warnings() const { return scene_.warnings; }  // of textures that cannot be read: undrawn-textures

@@ -22,14 +22,15 @@ SkinWeights rowsOf(const SkinWeights& weights, Index first, Index count) {
 
 }  // namespace
 
-OwnBinds::OwnBinds(const Asset& asset, const AssetSkeleton& skeleton, const SkinWeights& weights)
-    : asset_(asset), geometry_(collectGeometry(asset)), normals_(readNormals(asset, geometry_)) {
+OwnBinds::OwnBinds(const Character& character, const AssetSkeleton& skeleton, const SkinWeights& weights)
+    : character_(character), normals_(readNormals(character.document(), character.surface())) {
+  const Asset& asset = character.document();
   const BindPose pose = readBindPose(asset, readSceneGraph(asset.document));
   const std::vector<Index> elsewhere = skinsBoundElsewhere(asset, pose);
   const std::vector<Affine> rest = restGlobals(skeleton.skeleton);
   std::map<Index, Index> jointOf;  // by node
   for (Index j = 0; j < skeleton.jointNode.size(); ++j) jointOf[skeleton.jointNode[j]] = j;
-  for (const PrimitiveInstance& instance : geometry_.instances) {
+  for (const PrimitiveInstance& instance : character.surface().instances) {
     const std::optional<Index> skin = asset.document.nodes[instance.node].skin;
     if (!skin || std::find(elsewhere.begin(), elsewhere.end(), *skin) == elsewhere.end()) continue;
     Part part;
@@ -53,9 +54,9 @@ OwnBinds::OwnBinds(const Asset& asset, const AssetSkeleton& skeleton, const Skin
 
 void OwnBinds::deform(const Deformer& deformer, std::span<const Affine> transforms, const ShapeWeights& shapes,
                       std::span<Vec3f> positions, std::span<Vec3f> normals) const {
-  Geometry shaped = geometry_;
+  Geometry shaped = character_.surface();
   std::vector<Vec3f> shapedNormals = normals_;
-  moveByShapes(asset_, shapes, shaped, &shapedNormals);
+  moveByShapes(character_.document(), shapes, shaped, &shapedNormals);
   std::vector<Affine> own(transforms.size());
   for (const Part& part : parts_) {
     const std::size_t count = part.weights.vertexCount();

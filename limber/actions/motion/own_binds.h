@@ -4,10 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "limber/character/character.h"
 #include "limber/deform/deformer.h"
-#include "limber/document/asset.h"
-#include "limber/document/rig/rig_io.h"
-#include "limber/document/scene/geometry.h"
 #include "limber/document/scene/shape_surface.h"
 
 namespace limber {
@@ -17,8 +15,8 @@ namespace limber {
 // its own skin has it, which is exact.
 class OwnBinds {
  public:
-  // weights  #S rows, of the asset's geometry (collectGeometry); joints are those of `skeleton`
-  OwnBinds(const Asset& asset, const AssetSkeleton& skeleton, const SkinWeights& weights);
+  // weights  #S rows, of the character's surface; joints are those of `skeleton`
+  OwnBinds(const Character& character, const AssetSkeleton& skeleton, const SkinWeights& weights);
 
   // Moves the vertices of these skins; all others of `positions` and `normals` (#S) stay.
   //
@@ -37,8 +35,7 @@ class OwnBinds {
     std::vector<Vec3> centers;   // #J, of the joints, where this skin has the surface
   };
 
-  const Asset& asset_;
-  Geometry geometry_;
+  Character character_;
   std::vector<Vec3f> normals_;  // #S
   std::vector<Part> parts_;
 };

@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "limber/character/character.h"
 #include "limber/core/known_error.h"
 #include "limber/deform/linear_blend.h"
 #include "limber/document/clip/clip_io.h"
@@ -137,23 +136,23 @@ bool movesNodes(const Asset& asset) {
 // Puts the vertices of a document where they are at a moment.
 class VertexPoser {
  public:
-  explicit VertexPoser(const Asset& asset) {
-    const Character character(asset);
-    geometry_ = character.surface();
-    morphs_ = morphTargetsOf(asset, geometry_);
+  explicit VertexPoser(const Character& character)
+      : character_(character), morphs_(morphTargetsOf(character.document(), geometry())) {
+    const Asset& asset = character.document();
     if (asset.document.skins.empty() && !movesNodes(asset)) return;
     skeleton_ = character.moving();
-    weights_ = readWeights(asset, geometry_, skeleton_);
+    weights_ = readWeights(asset, geometry(), skeleton_);
     normalizeWeights(weights_);
     checkWeights(weights_, skeleton_.skeleton.jointCount());
     nodePose_ = readNodePose(asset, skeleton_);
-    scratch_.resize(linearBlendScratch(geometry_.positions.size(), skeleton_.skeleton.jointCount()));
+    scratch_.resize(linearBlendScratch(geometry().positions.size(), skeleton_.skeleton.jointCount()));
   }
 
-  const Geometry& geometry() const { return geometry_; }
+  const Geometry& geometry() const { return character_.surface(); }
 
-  std::vector<SampledClip> clipsOf(const Asset& asset) const {
-    std::vector<SampledClip> clips;
+  std::vector<SampledClip> clips() const {
+    const Asset& asset = character_.document();
+    std::vector<SampledClip> result;
     Warnings ignored;  // of reading, which the caller hears of when the rig is read
     std::vector<Clip> moved = skeleton_.jointNode.empty() ? std::vector<Clip>() : readClips(asset, skeleton_, ignored);
     const std::vector<gltf::Animation>& animations = asset.document.animations;
@@ -162,13 +161,13 @@ class VertexPoser {
       if (a < moved.size()) clip.clip = std::move(moved[a]);
       clip.clip.name = animations[a].name;
       clip.morphs = morphTracksOf(asset, animations[a], morphs_);
-      clips.push_back(std::move(clip));
+      result.push_back(std::move(clip));
     }
-    return clips;
+    return result;
   }
 
   const std::vector<Vec3f>& positionsAt(const SampledClip& clip, double seconds) {
-    positions_ = geometry_.positions;
+    positions_ = geometry().positions;
     for (const MorphTargets& morph : morphs_) addMorphs(morph, clip, seconds);
     if (skeleton_.jointNode.empty()) return positions_;
     Pose pose = nodePose_;
@@ -195,11 +194,11 @@ class VertexPoser {
     }
   }
 
-  Geometry geometry_;
-  AssetSkeleton skeleton_;
+  Character character_;
+  std::vector<MorphTargets> morphs_;
+  AssetSkeleton skeleton_;  // none where nothing but blend shapes moves
   SkinWeights weights_;
   Pose nodePose_;
-  std::vector<MorphTargets> morphs_;
   std::vector<Vec3f> positions_;
   std::vector<float> scratch_;
 };
@@ -301,9 +300,11 @@ void refuseStill(const VertexSequence& sequence, const std::string& name) {
        "bones are found by motion: give frames in which the mesh bends, or rig it without --from-animation"});
 }
 
-VertexAnimation readVertexAnimation(const Asset& asset, const VertexAnimationOptions& options, Progress& progress) {
-  VertexPoser poser(asset);
-  const std::vector<SampledClip> clips = chosenClips(poser.clipsOf(asset), options.clip, asset);
+VertexAnimation readVertexAnimation(const Character& character, const VertexAnimationOptions& options,
+                                    Progress& progress) {
+  const Asset& asset = character.document();
+  VertexPoser poser(character);
+  const std::vector<SampledClip> clips = chosenClips(poser.clips(), options.clip, asset);
   VertexAnimation animation;
   std::vector<Moment> moments;
   for (const SampledClip& clip : clips) {

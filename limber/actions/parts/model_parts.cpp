@@ -2,9 +2,7 @@
 
 #include <array>
 
-#include "limber/character/character.h"
 #include "limber/core/text/names.h"
-#include "limber/document/rig/rig_io.h"
 #include "limber/geometry/mesh/prepare.h"
 
 namespace limber {
@@ -90,16 +88,16 @@ PartDetail parsePartDetail(std::string_view name) {
   return findByName(kDetails, "detail of parts", name).detail;
 }
 
-SurfaceParts modelParts(const Asset& asset, const Geometry& geometry, const PartOptions& options, Progress& progress) {
-  const bool rigged = hasRig(asset);
+SurfaceParts modelParts(const Character& character, const PartOptions& options, Progress& progress) {
+  const Geometry& geometry = character.surface();
+  const bool rigged = character.hasRig();
   if (options.method == PartMethod::kWeights && !rigged) {
-    throw Error(ErrorCode::kBadArgument, "has no rig whose weights could tell parts", asset.name,
+    throw Error(ErrorCode::kBadArgument, "has no rig whose weights could tell parts", character.document().name,
                 "make one with limber rig, or take the parts by shape");
   }
   const KeptSurface surface = keptSurface(geometry);
   SurfaceParts parts;
   if (rigged && options.method != PartMethod::kShape) {
-    const Character character(asset);
     parts = byWeights(geometry, surface, character.binding().skeleton, character.weights(), options.detail, progress);
   } else {
     parts = partsByShape(surface.graph, {options.count}, progress);

@@ -6,7 +6,7 @@
 
 #include "limber/actions/parts/shape_parts.h"
 #include "limber/actions/parts/weight_parts.h"
-#include "limber/document/scene/geometry.h"
+#include "limber/character/character.h"
 
 namespace limber {
 
@@ -26,10 +26,10 @@ struct PartOptions {
 PartMethod parsePartMethod(std::string_view name);
 PartDetail parsePartDetail(std::string_view name);
 
-// A part for each triangle of `geometry`, which is collectGeometry(asset). Vertices at one position count as one;
-// triangles with two corners at one position go with a triangle beside them. Throws Error kBadArgument where parts by
-// weights are asked of a model without a rig, and what the methods throw. Cost: theirs and O(#F).
-SurfaceParts modelParts(const Asset& asset, const Geometry& geometry, const PartOptions& options, Progress& progress);
+// A part for each triangle of the character's surface. Vertices at one position count as one; triangles with two corners
+// at one position go with a triangle beside them. Throws Error kBadArgument where parts by weights are asked of a model
+// without a rig, and what the methods throw. Cost: theirs and O(#F).
+SurfaceParts modelParts(const Character& character, const PartOptions& options, Progress& progress);
 
 // The same by weights, for a surface and a rig that no file has yet. `weights` has #S rows over the skeleton's joints.
 SurfaceParts riggedParts(const Geometry& geometry, const Skeleton& skeleton, const SkinWeights& weights,

@@ -12,7 +12,7 @@ namespace {
 
 SurfaceParts partsOf(const Asset& asset, const PartOptions& options) {
   Progress progress;
-  return modelParts(asset, collectGeometry(asset), options, progress);
+  return modelParts(asset, options, progress);
 }
 
 Asset riggedDumbbell() {
@@ -69,7 +69,7 @@ TEST(ModelParts, StopWhenCancelled) {
     const Asset asset = riggedDumbbell();
     Progress progress;
     progress.cancel();
-    EXPECT_THROW(modelParts(asset, collectGeometry(asset), {method, {}, {}}, progress), Error);
+    EXPECT_THROW(modelParts(asset, {method, {}, {}}, progress), Error);
   }
 }
 

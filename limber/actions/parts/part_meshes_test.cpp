@@ -35,9 +35,9 @@ Asset bendingTube() {
   return asset;
 }
 
-SurfaceParts byWeights(const Asset& asset, const Geometry& geometry) {
+SurfaceParts byWeights(const Asset& asset) {
   Progress progress;
-  return modelParts(asset, geometry, {PartMethod::kWeights, PartDetail::kJoints, {}}, progress);
+  return modelParts(asset, {PartMethod::kWeights, PartDetail::kJoints, {}}, progress);
 }
 
 std::vector<PartNodes> takeApart(Asset& asset, const Geometry& geometry, const SurfaceParts& parts,
@@ -107,7 +107,7 @@ TEST(SplitParts, ARiggedModelKeepsSkinWeightsAndTrianglesAndIsClosed) {
   Asset asset = bendingTube();
   const std::vector<std::array<Corner, 3>> before = cornersOf(asset);
   const Geometry geometry = collectGeometry(asset);
-  const std::vector<PartNodes> parts = takeApart(asset, geometry, byWeights(asset, geometry));
+  const std::vector<PartNodes> parts = takeApart(asset, geometry, byWeights(asset));
   ASSERT_EQ(parts.size(), 2u);
   EXPECT_EQ(parts[0].name, "lower");
   for (const PartNodes& part : parts) {
@@ -126,7 +126,7 @@ TEST(SplitParts, ARiggedModelKeepsSkinWeightsAndTrianglesAndIsClosed) {
 TEST(SplitParts, CapsHaveTheWeightsRoundThem) {
   Asset asset = bendingTube();
   const Geometry geometry = collectGeometry(asset);
-  takeApart(asset, geometry, byWeights(asset, geometry));
+  takeApart(asset, geometry, byWeights(asset));
   const Geometry split = collectGeometry(asset);
   const SkinWeights weights = readWeights(asset, split, readSkeleton(asset));
   std::map<std::array<float, 3>, float> upper;
@@ -145,7 +145,7 @@ TEST(SplitParts, WithoutCapsTheSameTrianglesAreLeft) {
   Asset asset = bendingTube();
   const std::vector<std::array<Corner, 3>> before = cornersOf(asset);
   const Geometry geometry = collectGeometry(asset);
-  takeApart(asset, geometry, byWeights(asset, geometry), {false});
+  takeApart(asset, geometry, byWeights(asset), {false});
   EXPECT_EQ(cornersOf(asset), before);
   checkAsset(asset);
 }
@@ -157,7 +157,7 @@ TEST(SplitParts, AStaticModelHangsItsPartsBelowItsNode) {
     const std::vector<std::array<Corner, 3>> before = cornersOf(asset);
     const Geometry geometry = collectGeometry(asset);
     Progress progress;
-    const SurfaceParts found = modelParts(asset, geometry, {PartMethod::kAuto, {}, 2}, progress);
+    const SurfaceParts found = modelParts(asset, {PartMethod::kAuto, {}, 2}, progress);
     const std::vector<PartNodes> parts = takeApart(asset, geometry, found);
     EXPECT_EQ(cornersOf(asset, {"cut"}), before);
     EXPECT_EQ(asset.document.nodes[0].children.size(), 2u);
@@ -194,7 +194,7 @@ TEST(SplitParts, ASampleComesApartWhole) {
   const Geometry geometry = collectGeometry(asset);
   const std::vector<std::array<Corner, 3>> before = cornersOf(asset);
   Progress progress;
-  const SurfaceParts found = modelParts(asset, geometry, {}, progress);
+  const SurfaceParts found = modelParts(asset, {}, progress);
   EXPECT_GT(found.partCount(), 1u);
   const std::vector<PartNodes> parts = takeApart(asset, geometry, found);
   EXPECT_EQ(cornersOf(asset, {"cut"}), before);
@@ -206,7 +206,7 @@ TEST(PaintParts, EachPartHasAMaterialAndNothingElseChanges) {
   Asset asset = bendingTube();
   const std::vector<std::array<Corner, 3>> before = cornersOf(asset);
   const Geometry geometry = collectGeometry(asset);
-  const SurfaceParts parts = byWeights(asset, geometry);
+  const SurfaceParts parts = byWeights(asset);
   const std::vector<Vec3f> tints = {{1, 0, 0}, {0, 0.5f, 0}};
   paintParts(asset, geometry, parts, tints);
   EXPECT_EQ(cornersOf(asset), before);

@@ -7,7 +7,6 @@
 #include "limber/actions/edit_text.h"
 #include "limber/core/text/numbers.h"
 #include "limber/document/rig/pose_io.h"
-#include "limber/document/rig/rest_pose.h"
 #include "limber/skeleton/chain.h"
 #include "limber/skeleton/ik/ik_solver.h"
 
@@ -85,27 +84,25 @@ std::vector<ReachReport> editPose(const Skeleton& skeleton, Pose& pose, const Po
   return reach(skeleton, pose, edits.reaches, limits, options);
 }
 
-AssetPoser::AssetPoser(const Asset& asset, const AssetSkeleton& skeleton, const Deformer& deformer)
-    : joined_(withJoinedBinds(asset)),
-      asset_(joined_ ? *joined_ : asset),
+AssetPoser::AssetPoser(const Character& character, const AssetSkeleton& skeleton, const Deformer& deformer)
+    : character_(character),
+      whole_(character.inOneBindPose()),
       skeleton_(skeleton.skeleton),
-      deformer_(deformer) {
-  bound_.geometry = collectGeometry(asset_);
-  bound_.normals = readNormals(asset_, bound_.geometry);
-  shapes_ = readShapeWeights(asset_);
-  moveByShapes(asset_, shapes_, bound_.geometry, &bound_.normals);
-  if (joined_) instances_ = collectGeometry(asset).instances;
-  weights_ = readWeights(asset_, bound_.geometry, skeleton);
+      deformer_(deformer),
+      shapes_(readShapeWeights(whole_.document())) {
+  bound_ = {whole_.surface(), readNormals(whole_.document(), whole_.surface())};
+  moveByShapes(whole_.document(), shapes_, bound_.geometry, &bound_.normals);
+  weights_ = readWeights(whole_.document(), whole_.surface(), skeleton);
   normalizeWeights(weights_);
   centers_ = restPositions(skeleton_);
   prepared_ = prepareDeformer(deformer, {bound_.geometry.positions, bound_.geometry.triangles, weights_},
                               skeleton_.jointCount());
-  if (joined_ && !deformer.prepare) ownBinds_.emplace(asset, skeleton, weights_);
+  if (isJoined() && !deformer.prepare) ownBinds_.emplace(character, skeleton, weights_);
 }
 
 PosedGeometry AssetPoser::posed(const Pose& pose, const ShapeWeights& shapes) const {
   PosedGeometry shaped = bound_;
-  moveByShapes(asset_, shapes, shaped.geometry, &shaped.normals);
+  moveByShapes(whole_.document(), shapes, shaped.geometry, &shaped.normals);
   return moved(std::move(shaped), pose, shapes);
 }
 
@@ -113,16 +110,16 @@ PosedGeometry AssetPoser::moved(PosedGeometry result, const Pose& pose, const Sh
   std::vector<Vec3f>& positions = result.geometry.positions;
   const std::vector<Affine> transforms = skinTransforms(skeleton_, pose);
   std::vector<float> scratch(deformer_.scratchSize(positions.size(), skeleton_.jointCount()));
-  if (joined_) result.geometry.instances = instances_;
+  if (isJoined()) result.geometry.instances = character_.surface().instances;
   deformer_.deform({positions, result.normals, weights_, transforms, centers_, prepared_.get()},
                    {positions, result.normals}, scratch);
   if (ownBinds_) ownBinds_->deform(deformer_, transforms, shapes, positions, result.normals);
   return result;
 }
 
-PosedGeometry posedGeometry(const Asset& asset, const AssetSkeleton& skeleton, const Pose& pose,
+PosedGeometry posedGeometry(const Character& character, const AssetSkeleton& skeleton, const Pose& pose,
                             const Deformer& deformer) {
-  return AssetPoser(asset, skeleton, deformer).posed(pose);
+  return AssetPoser(character, skeleton, deformer).posed(pose);
 }
 
 }  // namespace limber

@@ -30,7 +30,7 @@ TEST(SurfaceParts, AreThoseOfTheSavedModel) {
   const SurfaceParts parts = surfaceParts(state);
   Progress progress;
   const Asset saved = documentOf(*state.rig);
-  const SurfaceParts expected = modelParts(saved, collectGeometry(saved), {}, progress);
+  const SurfaceParts expected = modelParts(saved, {}, progress);
   EXPECT_EQ(parts.names, expected.names);
   EXPECT_EQ(parts.partOf, expected.partOf);
   EXPECT_EQ(parts.partOf.size(), state.rig->geometry().triangles.size());
