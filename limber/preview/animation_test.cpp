@@ -29,7 +29,8 @@ TEST(Animation, ShowsTheSceneAtAMomentOfAClip) {
   for (Vec3f& value : clip.translations[0].values) value += rest;
   addClips(asset, skeleton, {&clip, 1});
   const Clip found = findClip(asset, "rise");
-  const Scene still = makeScene(asset), begin = sceneAt(asset, found, 0), later = sceneAt(asset, found, 0.25);
+  const Scene still = makeScene(asset), begin = SceneMaker(asset).at(found, 0),
+              later = SceneMaker(asset).at(found, 0.25);
   ASSERT_EQ(later.positions.size(), still.positions.size());
   for (std::size_t v = 0; v < still.positions.size(); ++v) {
     EXPECT_LT((begin.positions[v] - still.positions[v]).norm(), 1e-5f);
@@ -57,7 +58,7 @@ TEST(Animation, ShowsBlendShapesAtAMoment) {
   const Clip found = findClip(asset, "rise");
   EXPECT_EQ(found.duration(), 0);
   EXPECT_EQ(SceneMaker(asset).duration(found), 2);
-  const Scene still = makeScene(asset), later = sceneAt(asset, found, 0.5);
+  const Scene still = makeScene(asset), later = SceneMaker(asset).at(found, 0.5);
   const Vec3 up = first.toWorld.linear() * Vec3(0, 0.25, 0);
   for (std::size_t v = first.firstVertex; v < first.firstVertex + first.vertexCount; ++v) {
     EXPECT_LT((later.positions[v] - still.positions[v] - up.cast<float>()).norm(), 1e-5f);
@@ -88,7 +89,7 @@ TEST(Animation, ShowsASkeletonAloneAsItsBones) {
   const Asset asset = motionAsset(motion);
   Box still, later;
   for (const Vec3f& p : makeScene(asset).positions) still.add(p.cast<double>());
-  for (const Vec3f& p : sceneAt(asset, findClip(asset, ""), 1).positions) later.add(p.cast<double>());
+  for (const Vec3f& p : SceneMaker(asset).at(findClip(asset, ""), 1).positions) later.add(p.cast<double>());
   EXPECT_GE(still.size().y(), 2);
   EXPECT_LT(still.size().x(), 1);
   EXPECT_LT((later.center() - still.center() - Vec3(0, 1, 0)).norm(), 1e-5);

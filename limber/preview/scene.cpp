@@ -175,8 +175,4 @@ Scene makeScene(const Character& character) {
   return SceneMaker(character).still();
 }
 
-Scene sceneAt(const Character& character, const Clip& clip, double seconds) {
-  return SceneMaker(character).at(clip, seconds);
-}
-
 }  // namespace limber

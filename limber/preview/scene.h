@@ -54,11 +54,7 @@ struct Scene {
 // Colours are the materials' base colours times vertex colours times base colour textures.
 Scene makeScene(const Character& character);
 
-// The same at a moment of a clip over the document's movingSkeleton, with blend shapes as its animation of the clip's
-// name has them. Throws Error kUnsupported where meshes move without a skin.
-Scene sceneAt(const Character& character, const Clip& clip, double seconds);
-
-// Both for a character of which several pictures are made: what its deformer prepares is prepared once.
+// Pictures of one character, still or moving: what its deformer prepares is prepared once.
 class SceneMaker {
  public:
   explicit SceneMaker(const Character& character, const Deformer& deformer = kLinearBlendDeformer);
@@ -66,6 +62,8 @@ class SceneMaker {
   Scene still() const;
   // Do the joints' nodes have the rest pose? True without a rig. False where a pose was saved, which still() shows.
   bool isAtRest() const;
+  // The character in a clip over its document's movingSkeleton, with blend shapes as its animation of the clip's name
+  // has them. Throws Error kUnsupported where meshes move without a skin.
   Scene at(const Clip& clip, double seconds) const;
   double duration(const Clip& clip) const;  // seconds, with the blend shapes of its name
   // In a pose of the character's moving(); it must be rigged.

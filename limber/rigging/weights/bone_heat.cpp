@@ -20,6 +20,8 @@ namespace limber {
 namespace {
 
 constexpr std::size_t kRange = 1024;  // vertices of one parallel piece of work
+// Weights fade out between these two, so that no vertex follows a joint by next to nothing.
+constexpr double kFadeFrom = 0.05, kFadeTo = 0.025;
 
 bool anySource(const HeatSources& sources) {
   return !sources.joints.empty();
@@ -48,13 +50,13 @@ HeatProblem setUp(const BoneHeatOptions& heat, const TriMesh& mesh, std::span<co
   return problem;
 }
 
-double faded(double weight, const BoneHeatOptions& heat) {
-  if (weight >= heat.fadeFrom) return weight;
-  if (weight <= heat.fadeTo) return 0;
-  return heat.fadeFrom * (weight - heat.fadeTo) / (heat.fadeFrom - heat.fadeTo);
+double faded(double weight) {
+  if (weight >= kFadeFrom) return weight;
+  if (weight <= kFadeTo) return 0;
+  return kFadeFrom * (weight - kFadeTo) / (kFadeFrom - kFadeTo);
 }
 
-SkinWeights finish(const InfluenceTable& table, const BoneHeatOptions& heat) {
+SkinWeights finish(const InfluenceTable& table) {
   SkinWeights result;
   result.slots = table.slots();
   result.joints.assign(table.vertexCount() * table.slots(), 0);
@@ -65,7 +67,7 @@ SkinWeights finish(const InfluenceTable& table, const BoneHeatOptions& heat) {
       const auto weights = table.weightsOf(v);
       std::array<double, kMaxSlots> kept = {};
       double sum = 0;
-      for (Index k = 0; k < table.slots(); ++k) sum += kept[k] = faded(weights[k], heat);
+      for (Index k = 0; k < table.slots(); ++k) sum += kept[k] = faded(weights[k]);
       if (!(sum > 0)) sum = kept[0] = 1;  // many joints, all faint: the strongest holds it
       for (Index k = 0; k < table.slots() && kept[k] > 0; ++k) {
         result.joints[v * table.slots() + k] = joints[k];
@@ -110,11 +112,11 @@ WeightResult boneHeatWeightsWith(const BoneHeatOptions& heat, const TriMesh& mes
   std::optional<PieceRules> rules;
   if (mayBeOfParts(pieceCount, bones, options.pieces)) {
     rules.emplace(mesh, bones, piece, pieceCount, problem.sources.pull);
-    rules->classify(finish(table, heat));
+    rules->classify(finish(table));
     rules->dropHardlySeen(table);
   }
   result.bridged = bridgeBare(mesh, table);
-  result.weights = finish(table, heat);
+  result.weights = finish(table);
   if (options.pieces == PieceMode::kRigid) {
     bindWholePieces(mesh, result);
   } else if (rules) {

@@ -12,9 +12,6 @@ namespace limber {
 
 struct BoneHeatOptions {
   HeatSourceOptions sources;
-  // Weights fade out between these two, so that no vertex hangs on many joints by a thread.
-  double fadeFrom = 0.05;
-  double fadeTo = 0.025;
   // Vertices: more are solved by multigrid, which takes less time and memory then (docs/scale.md), instead of by one
   // factorisation. Every weight is the same within 1e-3.
   Index directBelow = 300'000;

@@ -60,25 +60,14 @@ class BoneFinder {
     nearBones_.clear();
     double nearest = std::numeric_limits<double>::infinity(), tolerance = 0;
     for (const auto& [least, i] : order_) {
-      // No farther bone is needed, unless the nearest turns out to be hidden.
-      if (options_.bonesTried == 1 && least > nearest + tolerance) break;
+      if (least > nearest + tolerance) break;
       const BoneDistance d = distance(vertex, i);
       nearBones_.push_back({d.surface, i});
       if (d.surface >= nearest) continue;
       nearest = d.surface;
       tolerance = options_.tieTolerance * d.axis;
     }
-    for (Index tried = 0; tried < options_.bonesTried && std::isfinite(nearest); ++tried) {
-      const double limit = nearest + tolerance;
-      if (const double pull = tryUpTo(vertex, nearest, limit, joints); pull > 0) return pull;
-      nearest = std::numeric_limits<double>::infinity();
-      for (const auto& [surface, i] : nearBones_) {
-        if (surface <= limit || surface >= nearest) continue;
-        nearest = surface;
-        tolerance = options_.tieTolerance * distance(vertex, i).axis;
-      }
-    }
-    return 0;
+    return pullUpTo(vertex, nearest + tolerance, joints);
   }
 
  private:
@@ -104,12 +93,12 @@ class BoneFinder {
     return 0.5 * (1 + kFacingMargin - normal_.dot(arm) / length);
   }
 
-  // The joints of the visible bones with from <= surface distance <= to.
-  double tryUpTo(const Vec3& vertex, double from, double to, std::vector<Index>& joints) const {
+  // Appends the joints of the visible bones that are no farther than that.
+  double pullUpTo(const Vec3& vertex, double most, std::vector<Index>& joints) const {
     const std::size_t start = joints.size();
     double nearestAxis = std::numeric_limits<double>::infinity();
     for (const auto& [surface, i] : nearBones_) {
-      if (surface < from || surface > to) continue;
+      if (surface > most) continue;
       const BoneDistance d = distance(vertex, i);
       if (bvh_ && bvh_->segmentBlocked(vertex, d.target, kSightMargin)) continue;
       joints.push_back(bones_[i].joint);

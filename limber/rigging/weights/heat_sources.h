@@ -15,7 +15,6 @@ struct HeatSourceOptions {
   bool facing = true;          // a bone in front of the surface rather than behind it counts as farther away
   double tieTolerance = 1e-4;  // bones farther than the nearest by less than this part of its distance share the vertex
   double minDistance = 5e-5;   // vertices nearer to a bone count as so far, in longest sides of the model
-  Index bonesTried = 1;        // how many of the nearest bones may be hidden before a vertex counts as seeing none
 };
 
 // For vertex v the joints first[v] to first[v + 1] of `joints`, ascending and different, each pull with `pull[v]`,

@@ -33,7 +33,6 @@ class PieceRules {
   // characters have 0.64 to 0.84, clothed people and animals at most 0.49. `weights` are those of bone heat, before
   // any bridging.
   void classify(const SkinWeights& weights);
-  bool madeOfParts() const { return madeOfParts_; }
 
   // Empties the rows of pieces of which hardly a vertex sees a bone, so that they take the weights of what they lie on:
   // less than a quarter, in a model of parts less than a twentieth. What such a piece sees it sees through a gap.

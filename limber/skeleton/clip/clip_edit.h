@@ -33,7 +33,6 @@ struct ClipLoop {
 };
 
 struct LoopOptions {
-  double shortest = 0.4;        // seconds
   double framesPerSecond = 30;  // at which poses are compared; fewer where the clip has more than 1500 such frames
   double largestError = 0.03;   // of the skeleton's size
   Index body = 0;               // the joint whose travel does not count; joints above it do not count either

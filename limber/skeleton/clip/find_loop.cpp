@@ -12,7 +12,8 @@ namespace limber {
 namespace {
 
 constexpr double kMaxLoopFrames = 1500;
-constexpr double kStill = 1e-4;  // of the skeleton's size: less movement than this is none
+constexpr double kMinLoop = 0.4;  // seconds
+constexpr double kStill = 1e-4;   // of the skeleton's size: less movement than this is none
 
 // The joints that the body travels with: all but those above it, which may stay where they are.
 std::vector<Index> travellers(const Skeleton& skeleton, Index body) {
@@ -52,7 +53,7 @@ double meanSquare(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
 
 std::optional<ClipLoop> findLoop(const Skeleton& skeleton, const Clip& clip, const LoopOptions& options) {
   const double duration = clip.duration();
-  if (options.body >= skeleton.jointCount() || duration < options.shortest) return std::nullopt;
+  if (options.body >= skeleton.jointCount() || duration < kMinLoop) return std::nullopt;
   const Quat rest(decompose(restGlobals(skeleton)[options.body]).rotation);
   const double rate = std::min(options.framesPerSecond, kMaxLoopFrames / duration);
   const Index frames = frameCount(clip, rate);
@@ -68,7 +69,7 @@ std::optional<ClipLoop> findLoop(const Skeleton& skeleton, const Clip& clip, con
   const double size = box.diagonal();
   if (!(size > 0) || std::sqrt(movement) < kStill * size) return std::nullopt;
 
-  const auto shortest = static_cast<Index>(std::max(2.0, std::ceil(options.shortest * rate)));
+  const auto shortest = static_cast<Index>(std::max(2.0, std::ceil(kMinLoop * rate)));
   std::optional<ClipLoop> best;
   double bestCost = std::numeric_limits<double>::infinity();
   for (Index i = 0; i + 1 < frames; ++i) {
