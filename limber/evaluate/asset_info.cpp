@@ -8,6 +8,7 @@
 #include "limber/document/clip/motion_io.h"
 #include "limber/document/gltf/accessor.h"
 #include "limber/geometry/mesh/components.h"
+#include "limber/geometry/mesh/edge_groups.h"
 #include "limber/geometry/mesh/prepare.h"
 
 namespace limber {
@@ -33,19 +34,10 @@ Index primitiveCount(const Asset& asset) {
 }
 
 void countEdges(const TriMesh& mesh, SurfaceInfo& info) {
-  std::vector<std::pair<Index, Index>> edges;
-  edges.reserve(mesh.triangles.size() * 3);
-  for (const Triangle& t : mesh.triangles) {
-    for (std::size_t c = 0; c < 3; ++c) edges.push_back(std::minmax({t[c], t[(c + 1) % 3]}));
-  }
-  std::sort(edges.begin(), edges.end());
-  for (std::size_t i = 0; i < edges.size();) {
-    std::size_t end = i;
-    while (end < edges.size() && edges[end] == edges[i]) ++end;
-    if (end - i == 1) ++info.openEdges;
-    if (end - i > 2) ++info.crowdedEdges;
-    i = end;
-  }
+  EdgeGroups(mesh.triangles, mesh.vertexCount()).forEachEdge([&](std::span<const Index> sides) {
+    if (sides.size() == 1) ++info.openEdges;
+    if (sides.size() > 2) ++info.crowdedEdges;
+  });
 }
 
 std::optional<SurfaceInfo> inspectSurface(const Geometry& geometry) {

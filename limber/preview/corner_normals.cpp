@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "limber/core/grouped.h"
 #include "limber/core/parallel.h"
 
 namespace limber {
@@ -76,24 +77,18 @@ std::vector<Vec3f> cornerNormals(std::span<const Vec3f> positions, std::span<con
   Index positionCount = 0;
   const std::vector<Index> number = positionNumbers(positions, positionCount);
 
-  std::vector<Index> first(std::size_t{positionCount} + 1, 0);
-  for (const Triangle& triangle : triangles) {
-    for (Index vertex : triangle) ++first[number[vertex] + 1];
-  }
-  std::partial_sum(first.begin(), first.end(), first.begin());
-  std::vector<Index> cornersAt(triangles.size() * 3);
-  std::vector<Index> next(first.begin(), first.end() - 1);
-  std::vector<Vec3> normals(triangles.size());
-  for (std::size_t f = 0; f < triangles.size(); ++f) {
-    normals[f] = faceNormal(positions, triangles[f]);
-    for (int c = 0; c < 3; ++c) cornersAt[next[number[triangles[f][c]]]++] = static_cast<Index>(3 * f) + c;
-  }
+  const Grouped<Index> cornersAt(positionCount, [&](const auto& visit) {
+    for (Index corner = 0; corner < 3 * triangles.size(); ++corner) {
+      visit(number[triangles[corner / 3][corner % 3]], corner);
+    }
+  });
+  std::vector<Vec3> normals;
+  for (const Triangle& triangle : triangles) normals.push_back(faceNormal(positions, triangle));
 
   std::vector<Vec3f> result(triangles.size() * 3, Vec3f::Zero());
   parallelFor(positionCount, 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
-      smoothRound({cornersAt.data() + first[p], first[p + 1] - first[p]}, positions, triangles, normals, cosCrease,
-                  result);
+      smoothRound(cornersAt.of(p), positions, triangles, normals, cosCrease, result);
     }
   });
   return result;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace limber {
 
@@ -36,7 +35,6 @@ ProjectedMesh::ProjectedMesh(std::span<const Vec3f> positions, std::span<const T
     if (!(seen.z() > 1e-9)) continue;
     vertices_[i] = {snap(seen.x()), snap(seen.y()), static_cast<float>(1 / seen.z())};
   }
-  first_.assign(std::size_t(columns_) * std::size_t(rows_) + 1, 0);
   const auto forEachTile = [&](const Triangle& triangle, auto&& visit) {
     std::array<int, 4> range;
     if (!tilesOf(triangle, range)) return;
@@ -45,15 +43,11 @@ ProjectedMesh::ProjectedMesh(std::span<const Vec3f> positions, std::span<const T
         visit(std::size_t(row) * std::size_t(columns_) + std::size_t(column));
     }
   };
-  for (const Triangle& triangle : triangles) {
-    forEachTile(triangle, [&](std::size_t tile) { ++first_[tile + 1]; });
-  }
-  std::partial_sum(first_.begin(), first_.end(), first_.begin());
-  members_.resize(first_.back());
-  std::vector<Index> next(first_.begin(), first_.end() - 1);
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    forEachTile(triangles[t], [&](std::size_t tile) { members_[next[tile]++] = static_cast<Index>(t); });
-  }
+  inTile_ = Grouped<Index>(std::size_t(columns_) * std::size_t(rows_), [&](const auto& visit) {
+    for (Index t = 0; t < triangles.size(); ++t) {
+      forEachTile(triangles[t], [&](std::size_t tile) { visit(tile, t); });
+    }
+  });
 }
 
 bool ProjectedMesh::tilesOf(const Triangle& triangle, std::array<int, 4>& range) const {
@@ -67,8 +61,7 @@ bool ProjectedMesh::tilesOf(const Triangle& triangle, std::array<int, 4>& range)
 }
 
 std::span<const Index> ProjectedMesh::inTile(int column, int row) const {
-  const std::size_t tile = std::size_t(row) * std::size_t(columns_) + std::size_t(column);
-  return {members_.data() + first_[tile], first_[tile + 1] - first_[tile]};
+  return inTile_.of(std::size_t(row) * std::size_t(columns_) + std::size_t(column));
 }
 
 Vec3 ProjectedMesh::barycentric(Index triangle, std::int32_t x, std::int32_t y) const {

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "limber/core/grouped.h"
 #include "limber/preview/camera.h"
 
 namespace limber {
@@ -42,7 +43,7 @@ class ProjectedMesh {
   std::vector<Vertex> vertices_;
   std::span<const Triangle> triangles_;
   int columns_ = 0, rows_ = 0;
-  std::vector<Index> first_, members_;
+  Grouped<Index> inTile_;  // by row, then by column
 };
 
 // The samples of one tile: index ((y * kTileSize) + x) * kSamplesPerPixel + sample.

@@ -11,49 +11,13 @@
 #include <utility>
 
 #include "limber/core/parallel.h"
+#include "limber/geometry/mesh/edge_groups.h"
 #include "limber/geometry/mesh/normals.h"
+#include "limber/geometry/mesh/vertex_triangles.h"
 
 namespace limber {
 
 namespace {
-
-// The directed edges of all triangles, sorted by their two vertices (lesser first), so that an edge's triangles are
-// neighbours in the list.
-struct EdgeSide {
-  Index low = 0, high = 0;
-  Index triangle = 0;
-  int corner = 0;  // the edge runs from this corner to the next
-
-  bool sameEdge(const EdgeSide& other) const { return low == other.low && high == other.high; }
-};
-
-std::vector<EdgeSide> sortedEdges(const std::vector<Triangle>& triangles) {
-  // By the lesser vertex in one pass, for few edges have the same one; those few by the other one.
-  std::vector<std::size_t> next;
-  const auto ofEach = [&](const auto& act) {
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-      for (int c = 0; c < 3; ++c) {
-        const Index a = triangles[t][std::size_t(c)], b = triangles[t][std::size_t((c + 1) % 3)];
-        act(EdgeSide{std::min(a, b), std::max(a, b), static_cast<Index>(t), c});
-      }
-    }
-  };
-  ofEach([&](const EdgeSide& side) {
-    if (next.size() < std::size_t{side.low} + 2) next.resize(std::size_t{side.low} + 2, 0);
-    ++next[side.low + 1];
-  });
-  std::partial_sum(next.begin(), next.end(), next.begin());
-  const std::vector<std::size_t> first = next;
-  std::vector<EdgeSide> sides(triangles.size() * 3);
-  ofEach([&](const EdgeSide& side) { sides[next[side.low]++] = side; });
-  for (std::size_t v = 0; v + 1 < first.size(); ++v) {
-    std::sort(sides.begin() + static_cast<std::ptrdiff_t>(first[v]),
-              sides.begin() + static_cast<std::ptrdiff_t>(first[v + 1]), [](const EdgeSide& a, const EdgeSide& b) {
-                return a.high != b.high ? a.high < b.high : a.triangle < b.triangle;
-              });
-  }
-  return sides;
-}
 
 // Newton steps along the gradient; a vertex on the seam stays on it.
 Vec3 ontoSurface(const Sculpture& sculpture, Vec3 point, int steps) {
@@ -121,21 +85,17 @@ void subdivide(HalfMesh& mesh, const std::vector<std::array<Index, 3>>& middle) 
 // Calls split(a, b) once for each edge; where it returns a point, the edge is cut there. Returns how many were.
 template <class Split>
 int splitEdges(HalfMesh& mesh, const Split& split) {
-  const std::vector<EdgeSide> sides = sortedEdges(mesh.triangles);
+  const EdgeGroups edges(mesh.triangles, static_cast<Index>(mesh.positions.size()));
   std::vector<std::array<Index, 3>> middle(mesh.triangles.size(), {kNoIndex, kNoIndex, kNoIndex});
   int count = 0;
-  for (std::size_t i = 0; i < sides.size();) {
-    std::size_t end = i + 1;
-    while (end < sides.size() && sides[end].sameEdge(sides[i])) ++end;
+  edges.forEachEdge([&](std::span<const Index> sides) {
     Vec3 point;
-    if (split(sides[i].low, sides[i].high, point)) {
-      const Index vertex = static_cast<Index>(mesh.positions.size());
-      mesh.positions.push_back(point);
-      for (std::size_t k = i; k < end; ++k) middle[sides[k].triangle][std::size_t(sides[k].corner)] = vertex;
-      ++count;
-    }
-    i = end;
-  }
+    if (!split(edges.low(sides[0]), edges.high(sides[0]), point)) return;
+    const Index vertex = static_cast<Index>(mesh.positions.size());
+    mesh.positions.push_back(point);
+    for (const Index side : sides) middle[side / 3][side % 3] = vertex;
+    ++count;
+  });
   if (count > 0) subdivide(mesh, middle);
   return count;
 }
@@ -143,34 +103,34 @@ int splitEdges(HalfMesh& mesh, const Split& split) {
 // Flips edges inside one material whose opposite angles add up to more than two right angles.
 void flipToDelaunay(HalfMesh& mesh, int passes) {
   for (int pass = 0; pass < passes; ++pass) {
-    const std::vector<EdgeSide> sides = sortedEdges(mesh.triangles);
-    std::vector<char> touched(mesh.triangles.size(), 0);
-    const auto hasEdge = [&](Index a, Index b) {
-      const EdgeSide wanted{std::min(a, b), std::max(a, b), 0, 0};
-      const auto found = std::lower_bound(sides.begin(), sides.end(), wanted, [](const EdgeSide& x, const EdgeSide& y) {
-        return std::pair(x.low, x.high) < std::pair(y.low, y.high);
-      });
-      return found != sides.end() && found->sameEdge(wanted);
-    };
+    const std::vector<Triangle> triangles = mesh.triangles;
+    const EdgeGroups groups(triangles, static_cast<Index>(mesh.positions.size()));
+    std::vector<std::pair<Index, Index>> edges;  // ascending
+    groups.forEachEdge(
+        [&](std::span<const Index> sides) { edges.emplace_back(groups.low(sides[0]), groups.high(sides[0])); });
+    std::vector<char> touched(triangles.size(), 0);
     std::set<std::pair<Index, Index>> made;
-    for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
-      const EdgeSide &s = sides[i], &o = sides[i + 1];
-      if (!s.sameEdge(o) || touched[s.triangle] || touched[o.triangle]) continue;
-      if (mesh.materials[s.triangle] != mesh.materials[o.triangle]) continue;
-      const Triangle &t = mesh.triangles[s.triangle], &u = mesh.triangles[o.triangle];
-      const Index a = t[std::size_t(s.corner)], b = t[std::size_t((s.corner + 1) % 3)];
-      const Index c = t[std::size_t((s.corner + 2) % 3)], d = u[std::size_t((o.corner + 2) % 3)];
+    const auto flip = [&](Index side, Index otherSide) {
+      const Index one = side / 3, other = otherSide / 3;
+      if (touched[one] || touched[other] || mesh.materials[one] != mesh.materials[other]) return;
+      const Index a = groups.corner(side), b = groups.corner(nextSide(side));
+      const Index c = groups.corner(nextSide(nextSide(side))), d = groups.corner(nextSide(nextSide(otherSide)));
+      const std::pair<Index, Index> edge = std::minmax(c, d);
       const auto& p = mesh.positions;
-      if (cotangent(p[c], p[a], p[b]) + cotangent(p[d], p[a], p[b]) >= -0.02 || hasEdge(c, d)) continue;
-      if (p[c].x() == 0 && p[d].x() == 0) continue;  // its mirror image would be the same edge again
-      const Vec3 one = (p[d] - p[c]).cross(p[a] - p[c]), two = (p[b] - p[c]).cross(p[d] - p[c]);
+      if (cotangent(p[c], p[a], p[b]) + cotangent(p[d], p[a], p[b]) >= -0.02) return;
+      if (std::binary_search(edges.begin(), edges.end(), edge)) return;
+      if (p[c].x() == 0 && p[d].x() == 0) return;  // its mirror image would be the same edge again
+      const Vec3 first = (p[d] - p[c]).cross(p[a] - p[c]), second = (p[b] - p[c]).cross(p[d] - p[c]);
       const Vec3 before = (p[b] - p[a]).cross(p[c] - p[a]);
-      if (one.dot(before) <= 0 || two.dot(before) <= 0) continue;  // it would fold over
-      if (!made.insert(std::minmax(c, d)).second) continue;
-      touched[s.triangle] = touched[o.triangle] = 1;
-      mesh.triangles[s.triangle] = {c, a, d};
-      mesh.triangles[o.triangle] = {c, d, b};
-    }
+      if (first.dot(before) <= 0 || second.dot(before) <= 0) return;  // it would fold over
+      if (!made.insert(edge).second) return;
+      touched[one] = touched[other] = 1;
+      mesh.triangles[one] = {c, a, d};
+      mesh.triangles[other] = {c, d, b};
+    };
+    groups.forEachEdge([&](std::span<const Index> sides) {
+      for (std::size_t i = 1; i < sides.size(); ++i) flip(sides[i - 1], sides[i]);
+    });
     if (made.empty()) break;
   }
 }
@@ -227,42 +187,12 @@ void dropMerged(HalfMesh& mesh, const std::vector<Index>& target) {
   mesh.materials.resize(out);
 }
 
-// The triangles round each vertex.
-struct VertexStars {
-  std::vector<Index> first, triangles;
-
-  explicit VertexStars(const HalfMesh& mesh)
-      : first(mesh.positions.size() + 1, 0), triangles(mesh.triangles.size() * 3) {
-    for (const Triangle& t : mesh.triangles) {
-      for (const Index v : t) ++first[v + 1];
-    }
-    for (std::size_t v = 0; v < mesh.positions.size(); ++v) first[v + 1] += first[v];
-    std::vector<Index> next(first.begin(), first.end() - 1);
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-      for (const Index v : mesh.triangles[t]) triangles[next[v]++] = static_cast<Index>(t);
-    }
-  }
-  std::span<const Index> of(Index v) const { return {triangles.data() + first[v], first[v + 1] - first[v]}; }
-};
-
-// Neighbours of a vertex, ascending.
-std::vector<Index> neighbours(const HalfMesh& mesh, const VertexStars& stars, Index vertex) {
-  std::vector<Index> result;
-  for (const Index t : stars.of(vertex)) {
-    for (const Index v : mesh.triangles[t]) {
-      if (v != vertex) result.push_back(v);
-    }
-  }
-  std::sort(result.begin(), result.end());
-  result.erase(std::unique(result.begin(), result.end()), result.end());
-  return result;
-}
-
 // May `gone` be merged into `kept` at `point`? Not where the surface would pinch (the link condition of Dey et al.
 // 1999), fold, or get triangles that are much too long.
-bool mayCollapse(const HalfMesh& mesh, const VertexStars& stars, Index kept, Index gone, std::size_t triangles,
+bool mayCollapse(const HalfMesh& mesh, const Grouped<Index>& trianglesAt, Index kept, Index gone, std::size_t triangles,
                  const Vec3& point, double longest) {
-  const std::vector<Index> around = neighbours(mesh, stars, kept), other = neighbours(mesh, stars, gone);
+  const std::vector<Index> around = neighboursOf(kept, mesh.triangles, trianglesAt);
+  const std::vector<Index> other = neighboursOf(gone, mesh.triangles, trianglesAt);
   std::vector<Index> common;
   std::set_intersection(around.begin(), around.end(), other.begin(), other.end(), std::back_inserter(common));
   if (common.size() != triangles || around.size() + other.size() < 7 + triangles) return false;
@@ -273,7 +203,7 @@ bool mayCollapse(const HalfMesh& mesh, const VertexStars& stars, Index kept, Ind
     }
   }
   for (const Index vertex : {kept, gone}) {
-    for (const Index t : stars.of(vertex)) {
+    for (const Index t : trianglesAt.of(vertex)) {
       const Triangle& v = mesh.triangles[t];
       const auto has = [&](Index wanted) { return std::find(v.begin(), v.end(), wanted) != v.end(); };
       if (has(kept) && has(gone)) continue;
@@ -299,25 +229,21 @@ bool collapseShortEdges(HalfMesh& mesh, const Sculpture& sculpture, const std::v
     Index kept, gone;
     std::size_t triangles;
   };
-  const std::vector<EdgeSide> sides = sortedEdges(mesh.triangles);
+  const EdgeGroups edges(mesh.triangles, static_cast<Index>(mesh.positions.size()));
   std::vector<Candidate> candidates;
-  for (std::size_t i = 0; i < sides.size();) {
-    std::size_t end = i + 1;
-    while (end < sides.size() && sides[end].sameEdge(sides[i])) ++end;
-    const Vec3 &p = mesh.positions[sides[i].low], &q = mesh.positions[sides[i].high];
-    const double length = (p - q).norm();
-    if (length < 0.72 * std::min(wanted[sides[i].low], wanted[sides[i].high])) {
-      Candidate candidate{length, sides[i].low, sides[i].high, end - i};
-      if (q.x() == 0) std::swap(candidate.kept, candidate.gone);  // the seam's vertex stays
-      candidates.push_back(candidate);
-    }
-    i = end;
-  }
+  edges.forEachEdge([&](std::span<const Index> sides) {
+    const Index low = edges.low(sides[0]), high = edges.high(sides[0]);
+    const double length = (mesh.positions[low] - mesh.positions[high]).norm();
+    if (!(length < 0.72 * std::min(wanted[low], wanted[high]))) return;
+    Candidate candidate{length, low, high, sides.size()};
+    if (mesh.positions[high].x() == 0) std::swap(candidate.kept, candidate.gone);  // the seam's vertex stays
+    candidates.push_back(candidate);
+  });
   std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
     return std::tie(a.length, a.kept, a.gone) < std::tie(b.length, b.kept, b.gone);
   });
 
-  const VertexStars stars(mesh);
+  const Grouped<Index> trianglesAt = trianglesAtVertices(mesh.triangles, mesh.positions.size());
   std::vector<char> touched(mesh.positions.size(), 0);
   std::vector<Index> target(mesh.positions.size());
   std::iota(target.begin(), target.end(), Index{0});
@@ -327,10 +253,11 @@ bool collapseShortEdges(HalfMesh& mesh, const Sculpture& sculpture, const std::v
     if (touched[c.kept] || touched[c.gone] || (seamKept && seamGone && c.triangles != 1)) continue;
     Vec3 point = mesh.positions[c.kept];
     if (seamKept == seamGone) point = ontoSurface(sculpture, 0.5 * (point + mesh.positions[c.gone]), 1);
-    if (!mayCollapse(mesh, stars, c.kept, c.gone, c.triangles, point, 1.35 * std::min(wanted[c.kept], wanted[c.gone])))
+    if (!mayCollapse(mesh, trianglesAt, c.kept, c.gone, c.triangles, point,
+                     1.35 * std::min(wanted[c.kept], wanted[c.gone])))
       continue;
     for (const Index vertex : {c.kept, c.gone}) {
-      for (const Index t : stars.of(vertex)) {
+      for (const Index t : trianglesAt.of(vertex)) {
         for (const Index v : mesh.triangles[t]) touched[v] = 1;
       }
     }

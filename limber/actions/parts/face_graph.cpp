@@ -136,21 +136,6 @@ void weighArcs(std::span<const Bend> bends, FaceGraph& graph) {
   }
 }
 
-void indexArcs(FaceGraph& graph) {
-  graph.firstArc.assign(std::size_t{graph.faceCount()} + 2, 0);
-  for (const FaceArc& arc : graph.arcs) {
-    ++graph.firstArc[arc.a + 2];
-    ++graph.firstArc[arc.b + 2];
-  }
-  for (std::size_t t = 1; t < graph.firstArc.size(); ++t) graph.firstArc[t] += graph.firstArc[t - 1];
-  graph.arcsAt.resize(2 * graph.arcs.size());
-  for (Index i = 0; i < graph.arcs.size(); ++i) {
-    graph.arcsAt[graph.firstArc[graph.arcs[i].a + 1]++] = i;
-    graph.arcsAt[graph.firstArc[graph.arcs[i].b + 1]++] = i;
-  }
-  graph.firstArc.pop_back();
-}
-
 }  // namespace
 
 FaceGraph faceGraph(const TriMesh& mesh) {
@@ -161,7 +146,12 @@ FaceGraph faceGraph(const TriMesh& mesh) {
   addEdges(mesh, faces, graph, bends);
   addLinks(mesh, surface, faces, graph, bends);
   weighArcs(bends, graph);
-  indexArcs(graph);
+  graph.arcsAt = Grouped<Index>(graph.faceCount(), [&](const auto& visit) {
+    for (Index i = 0; i < graph.arcs.size(); ++i) {
+      visit(graph.arcs[i].a, i);
+      visit(graph.arcs[i].b, i);
+    }
+  });
   return graph;
 }
 
@@ -170,7 +160,7 @@ void shortenFrom(const FaceGraph& graph, std::span<const Index> sources, std::ve
   shortenPaths(
       sources, distances,
       [&](Index at, const auto& visit) {
-        for (const Index arc : graph.arcsOf(at)) visit(graph.across(arc, at), graph.arcs[arc].distance);
+        for (const Index arc : graph.arcsAt.of(at)) visit(graph.across(arc, at), graph.arcs[arc].distance);
       },
       reach);
 }

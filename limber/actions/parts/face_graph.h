@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "limber/core/grouped.h"
 #include "limber/geometry/mesh/tri_mesh.h"
 
 namespace limber {
@@ -27,15 +28,11 @@ struct FaceArc {
 // triangles joins each to the next. Pieces that meet in a vertex alone are linked there, others where they
 // are nearest (pieceLinks), each link as one sharp concave edge, so that the graph is connected.
 struct FaceGraph {
-  std::vector<double> areas;    // #F
-  std::vector<FaceArc> arcs;    // ordered by shared edge, links last
-  std::vector<Index> firstArc;  // #F + 1 into arcsAt
-  std::vector<Index> arcsAt;    // numbers of arcs, ascending for each triangle
+  std::vector<double> areas;  // #F
+  std::vector<FaceArc> arcs;  // ordered by shared edge, links last
+  Grouped<Index> arcsAt;      // by triangle, numbers of arcs, ascending
 
   Index faceCount() const { return static_cast<Index>(areas.size()); }
-  std::span<const Index> arcsOf(Index face) const {
-    return {arcsAt.data() + firstArc[face], arcsAt.data() + firstArc[face + 1]};
-  }
   Index across(Index arc, Index face) const { return arcs[arc].a == face ? arcs[arc].b : arcs[arc].a; }
 };
 

@@ -36,8 +36,8 @@ TEST_P(FaceGraphOf, IsConnectedAndShortestWaysAreBellmansAndFords) {
   ASSERT_EQ(count, mesh.triangleCount());
   std::size_t ends = 0;
   for (Index t = 0; t < count; ++t) {
-    for (const Index a : graph.arcsOf(t)) EXPECT_NE(graph.across(a, t), t);
-    ends += graph.arcsOf(t).size();
+    for (const Index a : graph.arcsAt.of(t)) EXPECT_NE(graph.across(a, t), t);
+    ends += graph.arcsAt.of(t).size();
   }
   EXPECT_EQ(ends, 2 * graph.arcs.size());
   for (const FaceArc& arc : graph.arcs) {

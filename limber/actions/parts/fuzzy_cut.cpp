@@ -4,7 +4,6 @@
 #include <array>
 #include <functional>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <span>
 
@@ -50,7 +49,7 @@ class PairCut {
 
  private:
   void addNode(Index node, Index face, Index source, MaxFlow& flow, DisjointSets& patches) {
-    for (const Index a : graph_.arcsOf(face)) {
+    for (const Index a : graph_.arcsAt.of(face)) {
       const FaceArc& arc = graph_.arcs[a];
       if (arc.isLink) continue;
       const Index other = graph_.across(a, face);
@@ -125,7 +124,7 @@ std::vector<Index> islandsOf(const Patches& patches, std::span<const Index> part
 std::optional<Index> partRound(const FaceGraph& graph, std::span<const Index> faces, std::span<const Index> partOf) {
   std::map<Index, double> boundary;
   for (const Index face : faces) {
-    for (const Index a : graph.arcsOf(face)) {
+    for (const Index a : graph.arcsAt.of(face)) {
       const Index other = graph.across(a, face);
       if (!graph.arcs[a].isLink && partOf[other] != partOf[face]) boundary[partOf[other]] += graph.arcs[a].length;
     }
@@ -162,19 +161,12 @@ void mergeIslands(const FaceGraph& graph, std::vector<Index>& partOf, Progress& 
   for (int round = 0; round < kIslandRounds; ++round) {
     progress.update(static_cast<double>(round) / kIslandRounds);
     const Patches patches = findPatches(graph, partOf);
-    std::vector<Index> order(graph.faceCount());
-    std::iota(order.begin(), order.end(), Index{0});
-    std::stable_sort(order.begin(), order.end(),
-                     [&](Index a, Index b) { return patches.patchOf[a] < patches.patchOf[b]; });
+    const Grouped<Index> facesOf = numbersByGroup(patches.patchOf, graph.faceCount());
     bool changed = false;
     for (const Index island : islandsOf(patches, partOf)) {
-      const auto [begin, end] = std::equal_range(order.begin(), order.end(), island, [&](Index a, Index b) {
-        return patches.patchOf[a] < patches.patchOf[b];
-      });
-      const std::span<const Index> faces(&*begin, static_cast<std::size_t>(end - begin));
-      const std::optional<Index> part = partRound(graph, faces, partOf);
+      const std::optional<Index> part = partRound(graph, facesOf.of(island), partOf);
       if (!part) continue;
-      for (const Index face : faces) partOf[face] = *part;
+      for (const Index face : facesOf.of(island)) partOf[face] = *part;
       changed = true;
     }
     if (!changed) return;

@@ -28,7 +28,7 @@ std::vector<Index> between(const FaceGraph& graph, const FuzzyParts& fuzzy, cons
     std::vector<Index> patch = {start};
     std::array<bool, 2> touches = {false, false};
     for (std::size_t i = 0; i < patch.size(); ++i) {
-      for (const Index a : graph.arcsOf(patch[i])) {
+      for (const Index a : graph.arcsAt.of(patch[i])) {
         const Index other = graph.across(a, patch[i]);
         if (!isOpen(other)) touches[fuzzy.first[other]] = true;
         const bool isNew = std::find(patch.begin(), patch.end(), other) == patch.end();

@@ -23,23 +23,19 @@ JointTree::JointTree(const Skeleton& skeleton) : JointTree(parentsOf(skeleton)) 
 
 JointTree::JointTree(std::vector<std::optional<Index>> parents) : parents_(std::move(parents)) {
   const Index joints = size();
-  firstChild_.assign(joints + 1, 0);
   for (Index j = 0; j < joints; ++j) {
     const std::optional<Index>& parent = parents_[j];
     if (!parent) {
       roots_.push_back(j);
     } else if (*parent >= joints) {
       throw Error(ErrorCode::kBadData, fmt::format("joint {} hangs on joint {}, which is not there", j, *parent));
-    } else {
-      ++firstChild_[*parent + 1];
     }
   }
-  for (Index j = 0; j < joints; ++j) firstChild_[j + 1] += firstChild_[j];
-  children_.resize(firstChild_[joints]);
-  std::vector<Index> filled(firstChild_.begin(), firstChild_.end() - 1);
-  for (Index j = 0; j < joints; ++j) {
-    if (parents_[j]) children_[filled[*parents_[j]]++] = j;
-  }
+  children_ = Grouped<Index>(joints, [&](const auto& visit) {
+    for (Index j = 0; j < joints; ++j) {
+      if (parents_[j]) visit(*parents_[j], j);
+    }
+  });
 
   index_.assign(joints, 0);
   count_.assign(joints, 1);

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "limber/core/grouped.h"
 #include "limber/skeleton/skeleton.h"
 
 namespace limber {
@@ -19,9 +20,7 @@ class JointTree {
 
   Index size() const { return static_cast<Index>(parents_.size()); }
   const std::optional<Index>& parent(Index joint) const { return parents_[joint]; }
-  std::span<const Index> children(Index joint) const {
-    return {children_.data() + firstChild_[joint], children_.data() + firstChild_[joint + 1]};
-  }
+  std::span<const Index> children(Index joint) const { return children_.of(joint); }
   const std::vector<Index>& roots() const { return roots_; }
   // Every joint, parents before children; what hangs on a joint follows it without a gap.
   std::span<const Index> order() const { return order_; }
@@ -40,7 +39,7 @@ class JointTree {
 
  private:
   std::vector<std::optional<Index>> parents_;  // #J
-  std::vector<Index> firstChild_, children_;   // #J + 1 offsets into the children, in order of their numbers
+  Grouped<Index> children_;                    // #J, in order of their numbers
   std::vector<Index> roots_;
   std::vector<Index> order_, index_;  // #J, preorder; index of each joint in it
   std::vector<Index> count_, depth_;  // #J, of the subtree; 0 of roots

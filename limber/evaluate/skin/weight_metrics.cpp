@@ -10,6 +10,7 @@
 #include "limber/deform/linear_blend.h"
 #include "limber/evaluate/pairing.h"
 #include "limber/evaluate/skin/random_pose.h"
+#include "limber/geometry/mesh/edge_groups.h"
 #include "limber/geometry/mesh/prepare.h"
 
 namespace limber {
@@ -147,18 +148,16 @@ void measureSmoothness(const SkinnedModel& truth, const PairedSkins& skins, Weig
   const PreparedMesh welded = prepareMesh(truth.mesh.positions, truth.mesh.triangles, truth.stored);
   std::vector<Index> sourceVertex(welded.mesh.vertexCount(), kNoIndex);
   for (Index v = truth.mesh.vertexCount(); v-- > 0;) sourceVertex[welded.weldedVertex[v]] = v;
-  std::vector<std::pair<Index, Index>> edges;
-  for (const Triangle& t : welded.mesh.triangles) {
-    for (int corner = 0; corner < 3; ++corner) edges.push_back(std::minmax({t[corner], t[(corner + 1) % 3]}));
-  }
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-  for (const auto& [a, b] : edges) {
-    report.smoothness += weightDifference(skins.result, sourceVertex[a], skins.result, sourceVertex[b]);
-    report.truthSmoothness += weightDifference(skins.truth, sourceVertex[a], skins.truth, sourceVertex[b]);
-  }
-  report.smoothness /= static_cast<double>(edges.size());
-  report.truthSmoothness /= static_cast<double>(edges.size());
+  const EdgeGroups edges(welded.mesh.triangles, welded.mesh.vertexCount());
+  double count = 0;
+  edges.forEachEdge([&](std::span<const Index> sides) {
+    const Index a = sourceVertex[edges.low(sides[0])], b = sourceVertex[edges.high(sides[0])];
+    report.smoothness += weightDifference(skins.result, a, skins.result, b);
+    report.truthSmoothness += weightDifference(skins.truth, a, skins.truth, b);
+    ++count;
+  });
+  report.smoothness /= count;
+  report.truthSmoothness /= count;
 }
 
 Index countUsedJoints(const SkinWeights& weights, Index jointCount) {

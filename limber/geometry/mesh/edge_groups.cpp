@@ -1,7 +1,8 @@
 #include "limber/geometry/mesh/edge_groups.h"
 
 #include <algorithm>
-#include <numeric>
+
+#include "limber/core/grouped.h"
 
 namespace limber {
 
@@ -15,13 +16,12 @@ struct SideEntry {
   bool operator<(const SideEntry& other) const { return high != other.high ? high < other.high : side < other.side; }
 };
 
-void sortFew(SideEntry* begin, SideEntry* end) {
-  if (begin == end) return;
-  for (SideEntry* it = begin + 1; it < end; ++it) {
-    const SideEntry entry = *it;
-    SideEntry* at = it;
-    for (; at > begin && entry < at[-1]; --at) *at = at[-1];
-    *at = entry;
+void sortFew(std::span<SideEntry> entries) {
+  for (std::size_t i = 1; i < entries.size(); ++i) {
+    const SideEntry entry = entries[i];
+    std::size_t at = i;
+    for (; at > 0 && entry < entries[at - 1]; --at) entries[at] = entries[at - 1];
+    entries[at] = entry;
   }
 }
 
@@ -29,23 +29,19 @@ void sortFew(SideEntry* begin, SideEntry* end) {
 
 EdgeGroups::EdgeGroups(std::span<const Triangle> triangles, Index vertexCount) : triangles_(triangles) {
   const Index sideCount = static_cast<Index>(3 * triangles.size());
-  std::vector<std::size_t> first(vertexCount + std::size_t{1}, 0);
-  for (Index side = 0; side < sideCount; ++side) ++first[low(side) + 1];
-  std::partial_sum(first.begin(), first.end(), first.begin());
-  // One bucket for each lower vertex, its sides in order; then each bucket by the higher vertex.
-  std::vector<SideEntry> entries(sideCount);
-  std::vector<std::size_t> end(first.begin(), first.end() - 1);
-  for (Index side = 0; side < sideCount; ++side) entries[end[low(side)]++] = {high(side), side};
-  for (Index v = 0; v < vertexCount; ++v) {
-    SideEntry *from = entries.data() + first[v], *to = entries.data() + first[v + 1];
-    if (first[v + 1] - first[v] > kFew) {
-      std::sort(from, to);
-    } else {
-      sortFew(from, to);
-    }
-  }
+  Grouped<SideEntry> byLow(vertexCount, [&](const auto& visit) {
+    for (Index side = 0; side < sideCount; ++side) visit(low(side), {high(side), side});
+  });
   sides_.reserve(sideCount);
-  for (const SideEntry& entry : entries) sides_.push_back(entry.side);
+  for (Index v = 0; v < vertexCount; ++v) {
+    const std::span<SideEntry> entries = byLow.of(v);
+    if (entries.size() > kFew) {
+      std::sort(entries.begin(), entries.end());
+    } else {
+      sortFew(entries);
+    }
+    for (const SideEntry& entry : entries) sides_.push_back(entry.side);
+  }
 }
 
 }  // namespace limber

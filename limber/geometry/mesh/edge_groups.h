@@ -18,8 +18,8 @@ inline Index nextSide(Index side) {
 
 class EdgeGroups {
  public:
-  // The triangles stay the caller's and must outlive this. Each has three different vertices below vertexCount.
-  // Cost: O(#F).
+  // The triangles stay the caller's and must outlive this. Their vertices are below vertexCount; where two of one
+  // triangle are the same, the side between them is an edge of its own (low == high). Cost: O(#F).
   EdgeGroups(std::span<const Triangle> triangles, Index vertexCount);
 
   // Calls visit(std::span<const Index> sides) for each edge, by lower and then by higher vertex; sides ascend.

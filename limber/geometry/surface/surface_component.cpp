@@ -1,26 +1,18 @@
 #include "limber/geometry/surface/surface_component.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "limber/geometry/mesh/areas.h"
 #include "limber/geometry/mesh/components.h"
 
 namespace limber {
 
-Grouped::Grouped(std::span<const Index> groupOf, Index groupCount)
-    : members(groupOf.size()), begin(groupCount + std::size_t{2}) {
-  for (const Index group : groupOf) ++begin[group + std::size_t{2}];
-  std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  for (Index i = 0; i < groupOf.size(); ++i) members[begin[groupOf[i] + std::size_t{1}]++] = i;
-}
-
 SurfaceComponents SurfaceComponents::of(const TriMesh& mesh) {
   Index count = 0;
   const std::vector<Index> componentOf = vertexComponents(mesh, &count);
   std::vector<Index> ofTriangle;
   for (const Triangle& t : mesh.triangles) ofTriangle.push_back(componentOf[t[0]]);
-  SurfaceComponents result{{componentOf, count}, {ofTriangle, count}, {}};
+  SurfaceComponents result{numbersByGroup(componentOf, count), numbersByGroup(ofTriangle, count), {}};
   for (Index c = 0; c < count; ++c) {
     SurfaceComponent component{result.vertices.of(c), result.triangles.of(c), {}, 0};
     if (component.triangles.empty()) continue;

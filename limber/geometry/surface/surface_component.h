@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "limber/core/grouped.h"
 #include "limber/geometry/mesh/tri_mesh.h"
 
 namespace limber {
@@ -14,20 +15,9 @@ struct SurfaceComponent {
   double area = 0;
 };
 
-// Numbers 0, 1, ... ordered by the group that each belongs to; the first of group g is at begin[g].
-struct Grouped {
-  std::vector<Index> members;
-  std::vector<std::size_t> begin;
-
-  Grouped(std::span<const Index> groupOf, Index groupCount);
-  std::span<const Index> of(Index group) const {
-    return std::span(members).subspan(begin[group], begin[group + 1] - begin[group]);
-  }
-};
-
 // Those that have triangles, the one of the largest box first. Cost: O(#V + #F).
 struct SurfaceComponents {
-  Grouped vertices, triangles;
+  Grouped<Index> vertices, triangles;
   std::vector<SurfaceComponent> list;
 
   static SurfaceComponents of(const TriMesh& mesh);

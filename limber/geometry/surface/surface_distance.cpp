@@ -32,35 +32,8 @@ double acrossEdge(const Vec3& a, double da, const Vec3& b, double db, const Vec3
 
 }  // namespace
 
-SurfaceDistance::SurfaceDistance(TriMesh mesh) : mesh_(std::move(mesh)) {
-  firstTriangle_.assign(std::size_t{mesh_.vertexCount()} + 1, 0);
-  for (const Triangle& triangle : mesh_.triangles) {
-    for (const Index v : triangle) ++firstTriangle_[v + 1];
-  }
-  for (std::size_t v = 1; v < firstTriangle_.size(); ++v) firstTriangle_[v] += firstTriangle_[v - 1];
-  triangles_.resize(firstTriangle_.back());
-  std::vector<Index> next(firstTriangle_);
-  for (Index t = 0; t < mesh_.triangleCount(); ++t) {
-    for (const Index v : mesh_.triangles[t]) triangles_[next[v]++] = t;
-  }
-}
-
-std::pair<const Index*, const Index*> SurfaceDistance::trianglesAt(Index vertex) const {
-  return {triangles_.data() + firstTriangle_[vertex], triangles_.data() + firstTriangle_[vertex + 1]};
-}
-
-std::vector<Index> SurfaceDistance::neighbours(Index vertex) const {
-  std::vector<Index> result;
-  const auto [begin, end] = trianglesAt(vertex);
-  for (const Index* t = begin; t != end; ++t) {
-    for (const Index v : mesh_.triangles[*t]) {
-      if (v != vertex) result.push_back(v);
-    }
-  }
-  std::sort(result.begin(), result.end());
-  result.erase(std::unique(result.begin(), result.end()), result.end());
-  return result;
-}
+SurfaceDistance::SurfaceDistance(TriMesh mesh)
+    : mesh_(std::move(mesh)), trianglesAt_(trianglesAtVertices(mesh_.triangles, mesh_.vertexCount())) {}
 
 std::vector<VertexDistance> SurfaceDistance::within(Index triangle, const Vec3& barycentric, double radius) const {
   using Reached = std::pair<double, Index>;
@@ -86,9 +59,8 @@ std::vector<VertexDistance> SurfaceDistance::within(Index triangle, const Vec3& 
     if (settled[vertex]) continue;
     settled[vertex] = true;
     result.push_back({vertex, distance});
-    const auto [begin, end] = trianglesAt(vertex);
-    for (const Index* t = begin; t != end; ++t) {
-      const Triangle& corners = mesh_.triangles[*t];
+    for (const Index t : trianglesAt_.of(vertex)) {
+      const Triangle& corners = mesh_.triangles[t];
       for (int k = 0; k < 3; ++k) {
         const Index far = corners[k], next = corners[(k + 1) % 3];
         const Index other = next == vertex ? corners[(k + 2) % 3] : next;

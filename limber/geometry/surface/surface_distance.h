@@ -1,10 +1,10 @@
 // How far points of a surface are from one of them, along the surface.
 #pragma once
 
-#include <utility>
 #include <vector>
 
 #include "limber/geometry/mesh/tri_mesh.h"
+#include "limber/geometry/mesh/vertex_triangles.h"
 
 namespace limber {
 
@@ -29,13 +29,11 @@ class SurfaceDistance {
   std::vector<VertexDistance> within(Index triangle, const Vec3& barycentric, double radius) const;
 
   // The vertices that share an edge with this one, ascending.
-  std::vector<Index> neighbours(Index vertex) const;
+  std::vector<Index> neighbours(Index vertex) const { return neighboursOf(vertex, mesh_.triangles, trianglesAt_); }
 
  private:
-  std::pair<const Index*, const Index*> trianglesAt(Index vertex) const;
-
   TriMesh mesh_;
-  std::vector<Index> firstTriangle_, triangles_;  // #V + 1 into #3F: the triangles at each vertex
+  Grouped<Index> trianglesAt_;
 };
 
 }  // namespace limber

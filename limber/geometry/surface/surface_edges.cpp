@@ -6,64 +6,11 @@
 
 #include "limber/core/text/numbers.h"
 #include "limber/geometry/mesh/areas.h"
+#include "limber/geometry/mesh/edge_groups.h"
 
 namespace limber {
 
 namespace {
-
-// One side of a triangle: the edge's larger vertex, the triangle, and whether it runs from the smaller to the larger.
-struct Side {
-  Index larger = 0;
-  Index triangle = 0;
-  bool forward = false;
-};
-
-// Sides bucketed by their smaller vertex, each bucket ordered by larger vertex, then triangle.
-struct SideBuckets {
-  std::vector<std::size_t> begin;  // #V + 1
-  std::vector<Side> sides;
-};
-
-template <typename Visit>
-void forEachSide(const TriMesh& mesh, const Visit& visit) {
-  for (Index t = 0; t < mesh.triangleCount(); ++t) {
-    const Triangle& triangle = mesh.triangles[t];
-    for (int i = 0; i < 3; ++i) {
-      const Index from = triangle[i], to = triangle[(i + 1) % 3];
-      if (from != to) visit(std::min(from, to), Side{std::max(from, to), t, from < to});
-    }
-  }
-}
-
-void sortBucket(Side* begin, Side* end) {
-  const auto before = [](const Side& a, const Side& b) {
-    return a.larger != b.larger ? a.larger < b.larger : a.triangle < b.triangle;
-  };
-  if (end - begin > 24) {
-    std::sort(begin, end, before);
-    return;
-  }
-  for (Side* i = begin; i < end; ++i) {
-    const Side side = *i;
-    Side* j = i;
-    for (; j > begin && side.larger < j[-1].larger; --j) *j = j[-1];  // stable: triangles came in order
-    *j = side;
-  }
-}
-
-SideBuckets bucketSides(const TriMesh& mesh) {
-  SideBuckets buckets;
-  buckets.begin.assign(std::size_t{mesh.vertexCount()} + 2, 0);
-  forEachSide(mesh, [&](Index smaller, const Side&) { ++buckets.begin[smaller + 2]; });
-  std::partial_sum(buckets.begin.begin(), buckets.begin.end(), buckets.begin.begin());
-  buckets.sides.resize(buckets.begin.back());
-  forEachSide(mesh, [&](Index smaller, const Side& side) { buckets.sides[buckets.begin[smaller + 1]++] = side; });
-  buckets.begin.pop_back();
-  for (Index v = 0; v < mesh.vertexCount(); ++v) {
-    sortBucket(buckets.sides.data() + buckets.begin[v], buckets.sides.data() + buckets.begin[v + 1]);
-  }
-  return buckets;
-}
 
 // Union-find over triangles that also knows whether a triangle agrees with its root.
 class FacingSets {
@@ -157,23 +104,17 @@ std::vector<std::int8_t> facingOf(const TriMesh& mesh, FacingSets& sets) {
 }  // namespace
 
 SurfaceEdges surfaceEdges(const TriMesh& mesh) {
-  const SideBuckets buckets = bucketSides(mesh);
+  const EdgeGroups groups(mesh.triangles, mesh.vertexCount());
   SurfaceEdges result;
-  result.edges.reserve(buckets.sides.size() / 2 + 1);
+  result.edges.reserve(3 * mesh.triangles.size() / 2 + 1);
   FacingSets sets(mesh.triangles.size());
-  for (Index v = 0; v < mesh.vertexCount(); ++v) {
-    for (std::size_t i = buckets.begin[v]; i < buckets.begin[v + 1];) {
-      std::size_t end = i + 1;
-      while (end < buckets.begin[v + 1] && buckets.sides[end].larger == buckets.sides[i].larger) ++end;
-      const Side& first = buckets.sides[i];
-      result.edges.push_back({v, first.larger});
-      if (end - i == 2) {
-        const Side& second = buckets.sides[i + 1];
-        sets.unite(first.triangle, second.triangle, first.forward == second.forward);
-      }
-      i = end;
-    }
-  }
+  groups.forEachEdge([&](std::span<const Index> sides) {
+    const Index low = groups.low(sides[0]), high = groups.high(sides[0]);
+    if (low == high) return;
+    result.edges.push_back({low, high});
+    if (sides.size() != 2) return;
+    sets.unite(sides[0] / 3, sides[1] / 3, groups.ascends(sides[0]) == groups.ascends(sides[1]));
+  });
   result.facing = facingOf(mesh, sets);
   return result;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limber/core/grouped.h"
 #include "limber/geometry/mesh/components.h"
 #include "limber/geometry/solve/laplacian.h"
 #include "limber/geometry/solve/sparse_cholesky.h"
@@ -16,40 +17,27 @@ namespace {
 constexpr double kFirstSmoothing = 4e-3;
 constexpr double kGrowth = 3;
 
-// Rows of a symmetric matrix that is given by its lower triangle.
-struct SymmetricRows {
-  std::vector<int> first, column;
-  std::vector<double> value;
-
-  explicit SymmetricRows(const Eigen::SparseMatrix<double>& lower) : first(lower.cols() + std::size_t{1}, 0) {
-    const auto forEach = [&](auto visit) {
-      for (int c = 0; c < lower.cols(); ++c) {
-        for (int k = lower.outerIndexPtr()[c]; k < lower.outerIndexPtr()[c + 1]; ++k) {
-          visit(lower.innerIndexPtr()[k], c, lower.valuePtr()[k]);
-        }
-      }
-    };
-    forEach([&](int row, int c, double) {
-      ++first[row + 1];
-      if (row != c) ++first[c + 1];
-    });
-    for (std::size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
-    column.resize(first.back());
-    value.resize(first.back());
-    std::vector<int> end(first.begin(), first.end() - 1);
-    const auto put = [&](int row, int c, double entry) {
-      column[end[row]] = c;
-      value[end[row]++] = entry;
-    };
-    forEach([&](int row, int c, double entry) {
-      put(row, c, entry);
-      if (row != c) put(c, row, entry);
-    });
-  }
+struct MatrixEntry {
+  int column;
+  double value;
 };
 
+// Rows of a symmetric matrix that is given by its lower triangle.
+Grouped<MatrixEntry> symmetricRows(const Eigen::SparseMatrix<double>& lower) {
+  return {static_cast<std::size_t>(lower.cols()), [&](const auto& visit) {
+            for (int c = 0; c < lower.cols(); ++c) {
+              for (int k = lower.outerIndexPtr()[c]; k < lower.outerIndexPtr()[c + 1]; ++k) {
+                const int row = lower.innerIndexPtr()[k];
+                visit(row, {c, lower.valuePtr()[k]});
+                if (row != c) visit(c, {row, lower.valuePtr()[k]});
+              }
+            }
+          }};
+}
+
 // The lower triangle of factor^2 L L + diagonal^2.
-Eigen::SparseMatrix<double> normalMatrix(const SymmetricRows& l, double factor, const std::vector<double>& diagonal) {
+Eigen::SparseMatrix<double> normalMatrix(const Grouped<MatrixEntry>& l, double factor,
+                                         const std::vector<double>& diagonal) {
   const int size = static_cast<int>(diagonal.size());
   Eigen::SparseMatrix<double> matrix(size, size);
   std::vector<int> rows;
@@ -61,14 +49,12 @@ Eigen::SparseMatrix<double> normalMatrix(const SymmetricRows& l, double factor, 
     met.assign(1, c);
     isMet[c] = 1;
     sum[c] = diagonal[c] * diagonal[c];
-    for (int k = l.first[c]; k < l.first[c + 1]; ++k) {
-      const int middle = l.column[k];
-      for (int m = l.first[middle]; m < l.first[middle + 1]; ++m) {
-        const int row = l.column[m];
+    for (const MatrixEntry& left : l.of(c)) {
+      for (const auto& [row, value] : l.of(left.column)) {
         if (row < c) continue;
         if (!isMet[row]) met.push_back(row);
         isMet[row] = 1;
-        sum[row] += factor * factor * l.value[k] * l.value[m];
+        sum[row] += factor * factor * left.value * value;
       }
     }
     std::sort(met.begin(), met.end());
@@ -90,7 +76,7 @@ Eigen::SparseMatrix<double> normalMatrix(const SymmetricRows& l, double factor, 
 
 std::vector<Vec3> contractedOnce(const std::vector<Vec3>& positions, const Eigen::SparseMatrix<double>& stiffness,
                                  double smoothing, const std::vector<double>& attraction) {
-  const Eigen::SparseMatrix<double> matrix = normalMatrix(SymmetricRows(stiffness), smoothing, attraction);
+  const Eigen::SparseMatrix<double> matrix = normalMatrix(symmetricRows(stiffness), smoothing, attraction);
   SparseCholesky cholesky(matrix);
   cholesky.factorize(matrix);
   constexpr int kColumns = SparseCholesky::kColumns;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "limber/core/grouped.h"
 #include "limber/geometry/mesh/model_box.h"
 #include "limber/geometry/surface/piece_links.h"
 #include "limber/geometry/surface/point_tree.h"
@@ -88,17 +89,12 @@ void Starter::measureSurface(const std::vector<VertexPair>& links) {
 // those. Returns for each vertex the one it goes with.
 std::vector<Index> Starter::placeLoose(const std::vector<VertexPair>& edges) {
   const std::size_t count = points_.size();
-  std::vector<std::size_t> begin(count + 2, 0);
-  for (const auto& [a, b] : edges) {
-    ++begin[a + 2];
-    ++begin[b + 2];
-  }
-  std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  std::vector<Index> neighbors(begin.back());
-  for (const auto& [a, b] : edges) {
-    neighbors[begin[a + 1]++] = b;
-    neighbors[begin[b + 1]++] = a;
-  }
+  const Grouped<Index> neighbors(count, [&](const auto& visit) {
+    for (const auto& [a, b] : edges) {
+      visit(a, b);
+      visit(b, a);
+    }
+  });
   std::vector<Index> carriers(count, kNoIndex), queue;
   for (Index v = 0; v < count; ++v) {
     if (imageOf(v) == kNoIndex) continue;
@@ -107,11 +103,11 @@ std::vector<Index> Starter::placeLoose(const std::vector<VertexPair>& edges) {
   }
   for (std::size_t i = 0; i < queue.size(); ++i) {
     const Index v = queue[i];
-    for (std::size_t n = begin[v]; n < begin[v + 1]; ++n) {
-      if (carriers[neighbors[n]] != kNoIndex) continue;
-      carriers[neighbors[n]] = carriers[v];
-      queue.push_back(neighbors[n]);
-      start_.loose.push_back({neighbors[n], 0});
+    for (const Index next : neighbors.of(v)) {
+      if (carriers[next] != kNoIndex) continue;
+      carriers[next] = carriers[v];
+      queue.push_back(next);
+      start_.loose.push_back({next, 0});
     }
   }
   return carriers;
@@ -211,19 +207,16 @@ void Starter::addEdges(const std::vector<VertexPair>& edges) {
     found.push_back({b, makeEnd(b, true)});
   }
   // By first node, then by second: counting, then short sorts.
-  std::vector<std::size_t> begin(start_.nodeCenters.size() + 2, 0);
-  for (const GraphEdge& e : found) ++begin[e.from + 2];
-  std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  std::vector<EdgeEnd> ends(found.size());
-  for (const GraphEdge& e : found) ends[begin[e.from + 1]++] = e.to;
+  Grouped<EdgeEnd> ends(start_.nodeCenters.size(), [&](const auto& visit) {
+    for (const GraphEdge& e : found) visit(e.from, e.to);
+  });
   std::vector<GraphEdge>& unique = start_.input.edges;
   unique.reserve(found.size());
-  for (Index node = 0; node + 2 < begin.size(); ++node) {
-    const auto from = ends.begin() + static_cast<std::ptrdiff_t>(begin[node]);
-    const auto to = ends.begin() + static_cast<std::ptrdiff_t>(begin[node + 1]);
-    std::sort(from, to);
-    const auto last = std::unique(from, to);
-    for (auto end = from; end != last; ++end) unique.push_back({node, *end});
+  for (Index node = 0; node < ends.count(); ++node) {
+    const std::span<EdgeEnd> of = ends.of(node);
+    std::sort(of.begin(), of.end());
+    const auto last = std::unique(of.begin(), of.end());
+    for (auto end = of.begin(); end != last; ++end) unique.push_back({node, *end});
   }
 }
 

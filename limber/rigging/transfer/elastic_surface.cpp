@@ -56,21 +56,12 @@ std::vector<Edge> weightedEdges(const TriMesh& rest, std::span<const VertexPair>
 ElasticSurface::ElasticSurface(const TriMesh& rest, std::span<const VertexPair> links)
     : masses_(vertexAreas(rest)), edges_(weightedEdges(rest, links)) {
   for (Index v = 0; v < rest.vertexCount(); ++v) rest_.push_back(rest.position(v));
-  first_.assign(rest_.size() + 1, 0);
-  for (const Edge& edge : edges_) {
-    ++first_[edge.a + 1];
-    ++first_[edge.b + 1];
-  }
-  for (std::size_t v = 0; v < rest_.size(); ++v) first_[v + 1] += first_[v];
-  neighbour_.resize(2 * edges_.size());
-  neighbourWeight_.resize(2 * edges_.size());
-  std::vector<Index> next(first_.begin(), first_.end() - 1);
-  for (const Edge& edge : edges_) {
-    for (const auto& [from, to] : {std::pair{edge.a, edge.b}, std::pair{edge.b, edge.a}}) {
-      neighbour_[next[from]] = to;
-      neighbourWeight_[next[from]++] = edge.weight;
+  neighbours_ = Grouped<Neighbour>(rest_.size(), [&](const auto& visit) {
+    for (const Edge& edge : edges_) {
+      visit(edge.a, {edge.b, edge.weight});
+      visit(edge.b, {edge.a, edge.weight});
     }
-  }
+  });
   buildMatrix();
 }
 
@@ -103,10 +94,10 @@ std::vector<Mat3> ElasticSurface::frames(std::span<const Vec3> positions) const 
     for (std::size_t v = begin; v < end; ++v) {
       Mat3 correlation = Mat3::Zero();
       double size = 0;
-      for (Index i = first_[v]; i < first_[v + 1]; ++i) {
-        const Vec3 atRest = rest_[neighbour_[i]] - rest_[v], now = positions[neighbour_[i]] - positions[v];
-        correlation += neighbourWeight_[i] * now * atRest.transpose();
-        size += neighbourWeight_[i] * atRest.squaredNorm();
+      for (const auto& [neighbour, weight] : neighbours_.of(v)) {
+        const Vec3 atRest = rest_[neighbour] - rest_[v], now = positions[neighbour] - positions[v];
+        correlation += weight * now * atRest.transpose();
+        size += weight * atRest.squaredNorm();
       }
       if (!(size > 0)) continue;
       const Mat3 turn = bestRotation(correlation).toRotationMatrix();

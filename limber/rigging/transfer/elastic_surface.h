@@ -7,6 +7,7 @@
 
 #include <Eigen/SparseCore>
 
+#include "limber/core/grouped.h"
 #include "limber/geometry/mesh/tri_mesh.h"
 #include "limber/geometry/solve/sparse_cholesky.h"
 #include "limber/geometry/surface/surface_edges.h"
@@ -43,13 +44,17 @@ class ElasticSurface {
   const std::vector<Edge>& edges() const { return edges_; }
 
  private:
+  struct Neighbour {
+    Index vertex;
+    double weight;
+  };
+
   void buildMatrix();
 
   std::vector<Vec3> rest_;
   std::vector<double> masses_;
-  std::vector<Edge> edges_;               // a < b, in order
-  std::vector<Index> first_, neighbour_;  // neighbours of a vertex, by edge
-  std::vector<double> neighbourWeight_;
+  std::vector<Edge> edges_;                  // a < b, in order
+  Grouped<Neighbour> neighbours_;            // by vertex, in the order of their edges
   Eigen::SparseMatrix<double> matrix_;       // lower triangle
   std::vector<std::ptrdiff_t> diagonal_;     // #V, where in its values
   std::vector<std::ptrdiff_t> offDiagonal_;  // of each edge

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <mutex>
-#include <numeric>
 #include <utility>
 
 #include "limber/core/disjoint_sets.h"
@@ -71,18 +70,13 @@ void HeatSolver::holdSources() {
 void HeatSolver::gatherPulls(const HeatSources& sources) {
   const Index jointCount =
       sources.joints.empty() ? 0 : *std::max_element(sources.joints.begin(), sources.joints.end()) + 1;
-  firstPull_.assign(jointCount + std::size_t{1}, 0);
-  for (const Index joint : sources.joints) ++firstPull_[joint + 1];
-  for (Index joint = 0; joint < jointCount; ++joint) {
-    if (firstPull_[joint + 1] > 0) influencingJoints_.push_back(joint);
-  }
-  std::partial_sum(firstPull_.begin(), firstPull_.end(), firstPull_.begin());
-  pulls_.resize(sources.joints.size());
-  std::vector<std::size_t> end(firstPull_.begin(), firstPull_.end() - 1);
-  for (Index v = 0; v < sources.pull.size(); ++v) {
-    for (const Index joint : sources.jointsOf(v)) {
-      pulls_[end[joint]++] = {v, laplacian_.mass[v] * sources.pull[v]};
+  pulls_ = Grouped<Multigrid::Entry>(jointCount, [&](const auto& visit) {
+    for (Index v = 0; v < sources.pull.size(); ++v) {
+      for (const Index joint : sources.jointsOf(v)) visit(joint, {v, laplacian_.mass[v] * sources.pull[v]});
     }
+  });
+  for (Index joint = 0; joint < jointCount; ++joint) {
+    if (!pulls_.of(joint).empty()) influencingJoints_.push_back(joint);
   }
 }
 
@@ -153,7 +147,7 @@ bool HeatSolver::solveByMultigrid(const SettledVisitor& visit) {
     std::vector<std::span<const Multigrid::Entry>> right;
     for (std::size_t block = next++; block < all.size() && settled; block = next++) {
       right.clear();
-      for (const Index joint : all[block]) right.push_back(pullsOf(joint));
+      for (const Index joint : all[block]) right.push_back(pulls_.of(joint));
       if (!multigrid_->solve(right, tolerance_, scratch)) {
         settled = false;
         break;
@@ -178,7 +172,7 @@ void HeatSolver::solveDirectly(const SolvedVisitor& visit) const {
     const std::span<const Index> joints = all[block];
     std::vector<double> x(static_cast<std::size_t>(laplacian_.mass.size()) * kBlock, 0.0);
     for (std::size_t k = 0; k < joints.size(); ++k) {
-      for (const Multigrid::Entry& pull : pullsOf(joints[k])) {
+      for (const Multigrid::Entry& pull : pulls_.of(joints[k])) {
         x[cholesky_->rowOf(pull.unknown) * std::size_t{kBlock} + k] = pull.value;
       }
     }

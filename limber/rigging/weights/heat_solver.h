@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "limber/core/grouped.h"
 #include "limber/geometry/solve/laplacian.h"
 #include "limber/geometry/solve/multigrid.h"
 #include "limber/geometry/solve/sparse_cholesky.h"
@@ -53,9 +54,6 @@ class HeatSolver {
   void solveDirectly(const SolvedVisitor& visit) const;
   std::vector<std::span<const Index>> blocks() const;  // influencingJoints_, at most kBlock at a time
   void gatherPulls(const HeatSources& sources);
-  std::span<const Multigrid::Entry> pullsOf(Index joint) const {
-    return {pulls_.data() + firstPull_[joint], firstPull_[joint + 1] - firstPull_[joint]};
-  }
 
   MakeLaplacian makeLaplacian_;
   Laplacian laplacian_;   // the stiffness is empty beside multigrid
@@ -65,8 +63,7 @@ class HeatSolver {
   Index directBelow_;
   float tolerance_;
   std::vector<Index> influencingJoints_;  // joints that hold a vertex, ascending
-  std::vector<std::size_t> firstPull_;    // by joint
-  std::vector<Multigrid::Entry> pulls_;   // mass * pull
+  Grouped<Multigrid::Entry> pulls_;       // by joint: mass * pull
 };
 
 }  // namespace limber

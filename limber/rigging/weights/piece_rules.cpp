@@ -27,12 +27,11 @@ PieceRules::PieceRules(const TriMesh& mesh, std::span<const Bone> bones, const s
                        Index pieceCount, const std::vector<double>& pull)
     : bones_(bones),
       piece_(piece),
-      vertices_(pieceCount, 0),
+      vertices_(numbersByGroup(piece, pieceCount)),
       seeing_(pieceCount, 0),
       area_(pieceCount, 0),
       box_(pieceCount) {
   for (Index v = 0; v < mesh.vertexCount(); ++v) {
-    ++vertices_[piece[v]];
     seeing_[piece[v]] += pull[v] > 0;
     box_[piece[v]].add(mesh.position(v));
   }
@@ -47,27 +46,23 @@ PieceRules::PieceRules(const TriMesh& mesh, std::span<const Bone> bones, const s
   }
   jointCount_ = static_cast<Index>(hasBone.size());
   boneJoints_ = static_cast<Index>(std::count(hasBone.begin(), hasBone.end(), true));
-  order_.resize(piece.size());
-  std::iota(order_.begin(), order_.end(), Index{0});
-  std::stable_sort(order_.begin(), order_.end(), [&](Index v, Index w) { return piece[v] < piece[w]; });
 }
 
 double PieceRules::sight(Index piece) const {
-  return static_cast<double>(seeing_[piece]) / vertices_[piece];
+  return static_cast<double>(seeing_[piece]) / static_cast<double>(vertices_.of(piece).size());
 }
 
 // Piece by piece, the part of its vertices that each joint holds.
 void PieceRules::visitWeights(const SkinWeights& weights, const WeightVisitor& visit) const {
   std::vector<double> fractions(jointCount_, 0);
-  for (std::size_t begin = 0, end = 0; begin < order_.size(); begin = end) {
-    const Index piece = piece_[order_[begin]];
+  for (Index piece = 0; piece < vertices_.count(); ++piece) {
+    const std::span<const Index> vertices = vertices_.of(piece);
     std::fill(fractions.begin(), fractions.end(), 0.0);
-    for (; end < order_.size() && piece_[order_[end]] == piece; ++end) {
-      const Index v = order_[end];
+    for (const Index v : vertices) {
       for (Index slot = 0; slot < weights.slots; ++slot)
         fractions[weights.jointsOf(v)[slot]] += weights.weightsOf(v)[slot];
     }
-    for (double& fraction : fractions) fraction /= static_cast<double>(end - begin);
+    for (double& fraction : fractions) fraction /= static_cast<double>(vertices.size());
     visit(piece, fractions);
   }
 }

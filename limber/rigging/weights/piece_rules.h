@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "limber/core/error.h"
+#include "limber/core/grouped.h"
 #include "limber/geometry/mesh/tri_mesh.h"
 #include "limber/rigging/weights/influence_table.h"
 #include "limber/skeleton/skin_weights.h"
@@ -58,13 +59,12 @@ class PieceRules {
 
   std::span<const Bone> bones_;
   const std::vector<Index>& piece_;
-  Index jointCount_ = 0;         // above the highest joint of a bone
-  Index boneJoints_ = 0;         // joints that have a bone
-  std::vector<Index> order_;     // vertices, piece by piece
-  std::vector<Index> vertices_;  // by piece
-  std::vector<Index> seeing_;    // by piece: vertices that see a bone
-  std::vector<double> area_;     // by piece
-  std::vector<Box> box_;         // by piece
+  Index jointCount_ = 0;       // above the highest joint of a bone
+  Index boneJoints_ = 0;       // joints that have a bone
+  Grouped<Index> vertices_;    // by piece
+  std::vector<Index> seeing_;  // by piece: vertices that see a bone
+  std::vector<double> area_;   // by piece
+  std::vector<Box> box_;       // by piece
   double totalArea_ = 0;
   bool madeOfParts_ = false;
 };

@@ -79,18 +79,8 @@ double painted(PaintMode mode, double weight, double strength, double amount) {
 PaintSurface::PaintSurface(std::shared_ptr<const Geometry> geometry)
     : geometry_(std::move(geometry)),
       weldedVertex_(prepareGeometry(*geometry_, geometry_->triangles).weldedVertex),
-      distance_(weldedMesh(*geometry_, weldedVertex_)) {
-  firstSource_.assign(std::size_t{distance_.mesh().vertexCount()} + 1, 0);
-  for (const Index w : weldedVertex_) ++firstSource_[w + 1];
-  for (std::size_t w = 1; w < firstSource_.size(); ++w) firstSource_[w] += firstSource_[w - 1];
-  sources_.resize(weldedVertex_.size());
-  std::vector<Index> next(firstSource_);
-  for (Index s = 0; s < weldedVertex_.size(); ++s) sources_[next[weldedVertex_[s]]++] = s;
-}
-
-std::span<const Index> PaintSurface::sources(Index welded) const {
-  return {sources_.data() + firstSource_[welded], sources_.data() + firstSource_[welded + 1]};
-}
+      distance_(weldedMesh(*geometry_, weldedVertex_)),
+      sources_(numbersByGroup(weldedVertex_, distance_.mesh().vertexCount())) {}
 
 const std::optional<MirrorMap>& PaintSurface::mirror() const {
   if (!soughtMirror_) mirror_ = findMirror(distance_.mesh());

@@ -23,14 +23,15 @@ class PaintSurface {
   const SurfaceDistance& distance() const { return distance_; }
   Index weldedVertex(Index source) const { return weldedVertex_[source]; }
   // The vertices at the position of a welded one, ascending; never empty.
-  std::span<const Index> sources(Index welded) const;
+  std::span<const Index> sources(Index welded) const { return sources_.of(welded); }
   // Found when it is asked for first; none where the model is not its own mirror image.
   const std::optional<MirrorMap>& mirror() const;
 
  private:
   std::shared_ptr<const Geometry> geometry_;
-  std::vector<Index> weldedVertex_, firstSource_, sources_;
+  std::vector<Index> weldedVertex_;
   SurfaceDistance distance_;
+  Grouped<Index> sources_;  // by welded vertex
   mutable bool soughtMirror_ = false;
   mutable std::optional<MirrorMap> mirror_;
 };
