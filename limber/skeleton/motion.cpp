@@ -5,18 +5,9 @@
 
 #include <fmt/format.h>
 
+#include "limber/skeleton/clip/tracks.h"
+
 namespace limber {
-
-namespace {
-
-template <typename Value>
-void keepLonger(const std::vector<Track<Value>>& tracks, const std::vector<float>*& longest) {
-  for (const Track<Value>& track : tracks) {
-    if (!longest || track.times.size() > longest->size()) longest = &track.times;
-  }
-}
-
-}  // namespace
 
 void checkMotion(const Motion& motion) {
   checkSkeleton(motion.skeleton);
@@ -32,23 +23,28 @@ void checkMotion(const Motion& motion) {
   }
 }
 
+std::vector<float> longestTimes(const Clip& clip) {
+  std::vector<float> times;
+  forEachTrack(clip, [&](const auto& track) {
+    if (track.times.size() > times.size()) times = track.times;
+  });
+  return times;
+}
+
 std::optional<double> measuredFrameRate(const Clip& clip) {
-  const std::vector<float>* times = nullptr;
-  keepLonger(clip.translations, times);
-  keepLonger(clip.rotations, times);
-  keepLonger(clip.scales, times);
-  if (!times || times->size() < 2) return std::nullopt;
+  const std::vector<float> times = longestTimes(clip);
+  if (times.size() < 2) return std::nullopt;
   std::vector<double> steps;
-  for (std::size_t k = 1; k < times->size(); ++k) steps.push_back(double{(*times)[k]} - (*times)[k - 1]);
+  for (std::size_t k = 1; k < times.size(); ++k) steps.push_back(double{times[k]} - times[k - 1]);
   const auto median = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
   std::nth_element(steps.begin(), median, steps.end());
   if (!(*median > 0)) return std::nullopt;
   // Times in single precision: late in a long clip the steps are coarse, and 30 frames a second come out as 29.9999.
   constexpr double kEven = 0.02, kRounding = 2e-5;
-  std::size_t last = times->size() - 1;
-  const double lastStep = double{(*times)[last]} - (*times)[last - 1];
+  std::size_t last = times.size() - 1;
+  const double lastStep = double{times[last]} - times[last - 1];
   if (last > 1 && std::abs(lastStep - *median) > kEven * *median) --last;  // a clip may end between two frames
-  const double mean = (double{(*times)[last]} - times->front()) / static_cast<double>(last);
+  const double mean = (double{times[last]} - times.front()) / static_cast<double>(last);
   const double rate = 1 / (std::abs(mean - *median) < kEven * *median ? mean : *median), whole = std::round(rate);
   return std::abs(rate - whole) < kRounding * whole ? whole : rate;
 }

@@ -19,6 +19,9 @@ struct Motion {
 // Throws Error kBadData where the skeleton or a clip breaks its rules or the frame rate is not positive and finite.
 void checkMotion(const Motion& motion);
 
+// When the track with the most keys has them, the first of several; empty where no track has one.
+std::vector<float> longestTimes(const Clip& clip);
+
 // Keys a second of the track with the most keys: one over the median distance between neighbours, a whole number
 // where it is one to within rounding; nullopt where no track has two keys.
 std::optional<double> measuredFrameRate(const Clip& clip);

@@ -18,6 +18,7 @@
 #include "limber/skeleton/clip/join_loop.h"
 #include "limber/skeleton/clip/keys/key_reduction.h"
 #include "limber/skeleton/clip/root_extraction.h"
+#include "limber/skeleton/clip/tracks.h"
 
 namespace limber {
 
@@ -56,12 +57,7 @@ Clip edited(const SkeletonReading& reading, Clip clip, std::optional<Index> root
 }
 
 void renumberJoints(Clip& clip, const std::vector<Index>& number) {
-  const auto renumber = [&](auto& tracks) {
-    for (auto& track : tracks) track.joint = number[track.joint];
-  };
-  renumber(clip.translations);
-  renumber(clip.rotations);
-  renumber(clip.scales);
+  forEachTrack(clip, [&](auto& track) { track.joint = number[track.joint]; });
 }
 
 struct RootedCharacter {

@@ -9,6 +9,7 @@
 
 #include "limber/character/anatomy/anatomy.h"
 #include "limber/skeleton/chain.h"
+#include "limber/skeleton/clip/tracks.h"
 
 namespace limber {
 
@@ -40,12 +41,6 @@ Skeleton keptOf(const Skeleton& skeleton, const NewIndex& kept) {
     part.joints.push_back(std::move(joint));
   }
   return part;
-}
-
-template <typename Value>
-void keep(const NewIndex& kept, std::vector<Track<Value>>& tracks) {
-  std::erase_if(tracks, [&](const Track<Value>& track) { return !kept[track.joint]; });
-  for (Track<Value>& track : tracks) track.joint = *kept[track.joint];
 }
 
 // A whole body: its root, where its legs begin, and its size.
@@ -130,9 +125,10 @@ Motion motionBelow(const Motion& motion, Index root) {
   Motion part = motion;
   part.skeleton = keptOf(motion.skeleton, kept);
   for (Clip& clip : part.clips) {
-    keep(kept, clip.translations);
-    keep(kept, clip.rotations);
-    keep(kept, clip.scales);
+    forEachKind(clip, [&](auto& tracks) {
+      std::erase_if(tracks, [&](const auto& track) { return !kept[track.joint]; });
+      for (auto& track : tracks) track.joint = *kept[track.joint];
+    });
   }
   return part;
 }

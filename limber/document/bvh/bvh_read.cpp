@@ -10,6 +10,7 @@
 #include "limber/document/bvh/bvh_frames.h"
 #include "limber/document/bvh/bvh_hierarchy.h"
 #include "limber/document/bvh/bvh_line.h"
+#include "limber/skeleton/clip/tracks.h"
 
 namespace limber {
 
@@ -90,14 +91,6 @@ void turnAll(Motion& motion, UpAxis up) {
       for (Vec3f& value : track.values) std::swap(value.y(), value.z());
     }
   }
-}
-
-template <typename Value>
-Track<Value>& trackOf(std::vector<Track<Value>>& tracks, Index joint, const Value& atRest) {
-  for (Track<Value>& track : tracks) {
-    if (track.joint == joint) return track;
-  }
-  return tracks.emplace_back(Track<Value>{joint, Interpolation::kLinear, {0.0f}, {atRest}});
 }
 
 // The frames alone, by their roots.

@@ -15,6 +15,7 @@
 #include "limber/core/text/numbers.h"
 #include "limber/core/text/printable.h"
 #include "limber/skeleton/chain.h"
+#include "limber/skeleton/clip/tracks.h"
 
 namespace limber {
 
@@ -124,9 +125,7 @@ class BvhWriter {
 
   void findEnds() {
     std::vector<bool> moved(skeleton_.jointCount(), false);
-    for (const auto& track : clip_.translations) moved[track.joint] = true;
-    for (const auto& track : clip_.rotations) moved[track.joint] = true;
-    for (const auto& track : clip_.scales) moved[track.joint] = true;
+    forEachTrack(clip_, [&](const auto& track) { moved[track.joint] = true; });
     for (Index j = 0; j < skeleton_.jointCount(); ++j) {
       const Joint& joint = skeleton_.joints[j];
       const bool named = joint.name.size() > kEndSite.size() &&

@@ -20,6 +20,7 @@
 #include "limber/document/scene/node_edit.h"
 #include "limber/document/scene/scene_graph.h"
 #include "limber/document/unique_names.h"
+#include "limber/skeleton/clip/tracks.h"
 
 namespace limber {
 
@@ -587,25 +588,11 @@ class ClipWriter {
   // The clip's duration where only constant tracks last that long, else 0.
   static float durationToHold(const Clip& clip) {
     float last = 0;
-    const auto extend = [&](const auto& tracks) {
-      for (const auto& track : tracks) last = isConstant(track) ? last : std::max(last, track.times.back());
-    };
-    extend(clip.translations);
-    extend(clip.rotations);
-    extend(clip.scales);
+    forEachTrack(clip, [&](const auto& track) {
+      if (!isConstant(track)) last = std::max(last, track.times.back());
+    });
     const auto duration = static_cast<float>(clip.duration());
     return last < duration ? duration : 0;
-  }
-
-  template <typename Value>
-  static bool isConstant(const Track<Value>& track) {
-    const bool cubic = track.interpolation == Interpolation::kCubic;
-    for (std::size_t v = 0; v < track.values.size(); ++v) {
-      const bool tangent = cubic && v % 3 != 1;
-      const auto& value = numbers(track.values[v]);
-      if (tangent ? !value.isZero(0) : value != numbers(track.values[cubic ? 1 : 0])) return false;
-    }
-    return true;
   }
 
   static bool isSame(const Vec3f& a, const Vec3f& b) { return a.isApprox(b, kStanding); }
@@ -613,17 +600,15 @@ class ClipWriter {
     return std::min((a.coeffs() - b.coeffs()).norm(), (a.coeffs() + b.coeffs()).norm()) < kStanding;
   }
 
-  static const Vec3f& numbers(const Vec3f& v) { return v; }
-  static const Vec4f& numbers(const Eigen::Quaternionf& q) { return q.coeffs(); }
-
   template <typename Value>
   void addSampler(Index j, const char* path, const Track<Value>& track) {
     std::vector<float> values;
     for (const Value& value : track.values) {
-      values.insert(values.end(), numbers(value).data(), numbers(value).data() + numbers(value).size());
+      const auto& numbers = coefficientsOf(value);
+      values.insert(values.end(), numbers.data(), numbers.data() + numbers.size());
     }
     const Index times = input(track.times);
-    const auto components = static_cast<Index>(numbers(track.values[0]).size());
+    const auto components = static_cast<Index>(coefficientsOf(track.values[0]).size());
     const Index output = shared_ ? shared_->add(values, components) : addFloatAccessor(asset_, values, components);
     const Index sampler = addElement(animation_.samplers, {{}, times, output, track.interpolation});
     const Index node = skeleton_.jointNode[j];

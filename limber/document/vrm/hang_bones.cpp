@@ -14,6 +14,7 @@
 #include "limber/document/vrm/vrm_bones.h"
 #include "limber/skeleton/chain.h"
 #include "limber/skeleton/clip/keys/movement_keys.h"
+#include "limber/skeleton/clip/tracks.h"
 
 namespace limber {
 
@@ -53,13 +54,6 @@ std::vector<Index> upward(const Skeleton& skeleton, Index joint) {
   std::vector<Index> joints;
   for (std::optional<Index> j = joint; j; j = skeleton.joints[*j].parent) joints.push_back(*j);
   return joints;
-}
-
-template <typename Value>
-void addKeyTimesOf(const std::vector<Track<Value>>& tracks, const std::set<Index>& joints, std::vector<float>& times) {
-  for (const Track<Value>& track : tracks) {
-    if (joints.count(track.joint) > 0) addKeyTimes(track, times);
-  }
 }
 
 // The clips of a rig on the same joints under other parents.
@@ -104,9 +98,9 @@ class ClipMover {
       for (const Index j : upward(from_.skeleton, *parent)) deciding.insert(j);
     }
     std::vector<float> times = {0};
-    addKeyTimesOf(clip.translations, deciding, times);
-    addKeyTimesOf(clip.rotations, deciding, times);
-    addKeyTimesOf(clip.scales, deciding, times);
+    forEachTrack(clip, [&](const auto& track) {
+      if (deciding.count(track.joint) > 0) addKeyTimes(track, times);
+    });
     Pose pose = restPose(from_.skeleton);
     Transform last = to_.skeleton.joints[moved].rest;
     const MovingTransform movement = [&](double seconds) {

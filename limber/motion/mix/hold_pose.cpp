@@ -6,6 +6,7 @@
 #include "limber/core/error.h"
 #include "limber/motion/mix/pose_curve.h"
 #include "limber/motion/retarget/retarget_clip.h"
+#include "limber/skeleton/clip/tracks.h"
 
 namespace limber {
 
@@ -14,27 +15,19 @@ namespace {
 // Metres, and components of quaternions; 1e-5 to 1e-3; what retargeting leaves of frames that are alike; rounding only.
 constexpr double kStill = 1e-4;
 
-Eigen::Vector4f numbersOf(const Vec3f& value) {
-  return {value.x(), value.y(), value.z(), 0};
-}
-
-Eigen::Vector4f numbersOf(const Eigen::Quaternionf& value) {
-  return value.coeffs();
-}
-
 template <class Value>
-bool areStill(const std::vector<Track<Value>>& tracks) {
-  return std::all_of(tracks.begin(), tracks.end(), [](const Track<Value>& track) {
-    return track.times.size() == 1 || std::all_of(track.values.begin(), track.values.end(), [&](const Value& value) {
-             return (numbersOf(value) - numbersOf(track.values.front())).cwiseAbs().maxCoeff() <= kStill;
-           });
-  });
+bool isStill(const Track<Value>& track) {
+  return track.times.size() == 1 || std::all_of(track.values.begin(), track.values.end(), [&](const Value& value) {
+           return (coefficientsOf(value) - coefficientsOf(track.values.front())).cwiseAbs().maxCoeff() <= kStill;
+         });
 }
 
 }  // namespace
 
 bool isStill(const Clip& clip) {
-  return areStill(clip.translations) && areStill(clip.rotations) && areStill(clip.scales);
+  bool still = true;
+  forEachTrack(clip, [&](const auto& track) { still = still && isStill(track); });
+  return still;
 }
 
 ClipWithContacts holdPose(const Skeleton& skeleton, const Clip& clip, double seconds, double frameSeconds) {

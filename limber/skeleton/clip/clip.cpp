@@ -7,6 +7,7 @@
 
 #include "limber/core/error.h"
 #include "limber/skeleton/clip/keys/key_rounding.h"
+#include "limber/skeleton/clip/tracks.h"
 
 namespace limber {
 
@@ -73,12 +74,9 @@ Quat fromCoefficients(const Vec4& v, const Eigen::Quaternionf&) {
   return Quat(v).normalized();
 }
 
-Vec3 coefficients(const Vec3f& v) {
-  return v.cast<double>();
-}
-
-Vec4 coefficients(const Eigen::Quaternionf& q) {
-  return q.coeffs().cast<double>();
+template <typename Value>
+auto coefficients(const Value& value) {
+  return coefficientsOf(value).template cast<double>().eval();
 }
 
 template <typename Value>
@@ -122,14 +120,9 @@ Quat sampleTrack(const Track<Eigen::Quaternionf>& track, double seconds) {
 
 double Clip::duration() const {
   double last = 0;
-  const auto extend = [&](const auto& tracks) {
-    for (const auto& track : tracks) {
-      if (!track.times.empty()) last = std::max(last, double{track.times.back()});
-    }
-  };
-  extend(translations);
-  extend(rotations);
-  extend(scales);
+  forEachTrack(*this, [&](const auto& track) {
+    if (!track.times.empty()) last = std::max(last, double{track.times.back()});
+  });
   return last;
 }
 

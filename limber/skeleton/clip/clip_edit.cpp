@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "limber/core/error.h"
+#include "limber/skeleton/clip/tracks.h"
 #include "limber/skeleton/motion.h"
 
 namespace limber {
@@ -19,14 +20,6 @@ Vec3f stored(const Vec3& value) {
 }
 Eigen::Quaternionf stored(const Quat& value) {
   return value.cast<float>();
-}
-
-// q and -q are one rotation, but the paths of interpolation to them differ.
-void keepNearSide(std::vector<Vec3f>&) {}
-void keepNearSide(std::vector<Eigen::Quaternionf>& values) {
-  for (std::size_t k = 1; k < values.size(); ++k) {
-    if (values[k].coeffs().dot(values[k - 1].coeffs()) < 0) values[k].coeffs() *= -1;
-  }
 }
 
 std::vector<float> frameTimes(double duration, double rate, Index frames) {
@@ -166,20 +159,6 @@ Track<Vec3f> trimTrack(const Track<Vec3f>& track, double from, double to) {
 Track<Eigen::Quaternionf> trimTrack(const Track<Eigen::Quaternionf>& track, double from, double to) {
   return trimmed(track, from, to);
 }
-
-namespace {
-
-// The joint's track, where there is none one that keeps it in rest pose.
-template <typename Value>
-Track<Value>& trackOf(std::vector<Track<Value>>& tracks, Index joint, const Value& rest) {
-  const auto has = [&](const Track<Value>& track) { return track.joint == joint; };
-  const auto known = std::find_if(tracks.begin(), tracks.end(), has);
-  if (known != tracks.end()) return *known;
-  tracks.push_back({joint, Interpolation::kLinear, {0.0f}, {rest}});
-  return tracks.back();
-}
-
-}  // namespace
 
 Clip turnClip(Clip clip, const Skeleton& skeleton, const Quat& turn) {
   if (turn.coeffs() == Quat::Identity().coeffs()) return clip;

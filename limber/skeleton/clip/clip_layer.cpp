@@ -7,6 +7,7 @@
 
 #include "limber/core/error.h"
 #include "limber/skeleton/clip/keys/retime_keys.h"
+#include "limber/skeleton/clip/tracks.h"
 
 namespace limber {
 
@@ -94,13 +95,6 @@ Vec3f singles(const Vec3& value) {
 }
 Eigen::Quaternionf singles(const Quat& value) {
   return value.cast<float>().normalized();
-}
-
-template <class Value>
-const Track<Value>* findTrack(const std::vector<Track<Value>>& tracks, Index joint) {
-  const auto track =
-      std::find_if(tracks.begin(), tracks.end(), [&](const Track<Value>& known) { return known.joint == joint; });
-  return track == tracks.end() ? nullptr : &*track;
 }
 
 template <class Value>

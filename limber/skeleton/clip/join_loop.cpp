@@ -9,6 +9,7 @@
 #include "limber/core/error.h"
 #include "limber/skeleton/clip/clip_edit.h"
 #include "limber/skeleton/clip/moving_roots.h"
+#include "limber/skeleton/clip/tracks.h"
 #include "limber/skeleton/motion.h"
 #include "limber/skeleton/pose.h"
 
@@ -143,18 +144,6 @@ class Carriers {
   bool turns_ = false;
 };
 
-// Those of the track with the most.
-std::vector<float> longestTimes(const Clip& clip) {
-  std::vector<float> times;
-  const auto keepLonger = [&](const auto& tracks) {
-    for (const auto& track : tracks) times = track.times.size() > times.size() ? track.times : times;
-  };
-  keepLonger(clip.translations);
-  keepLonger(clip.rotations);
-  keepLonger(clip.scales);
-  return times;
-}
-
 // Speeds at the ends are measured by even steps. The clip has a duration.
 Clip inEvenSteps(const Clip& clip) {
   const double duration = clip.duration(), steps = std::max(2.0, std::round(duration * denseFrameRateOf(clip)));
@@ -208,11 +197,7 @@ JoinedLoop joinLoop(const Skeleton& skeleton, const Clip& clip, Index body) {
   write(frames.translations, [](const Transform& local) { return Vec3f(local.translation.cast<float>()); });
   write(frames.rotations, [](const Transform& local) { return Eigen::Quaternionf(local.rotation.cast<float>()); });
   write(frames.scales, [](const Transform& local) { return Vec3f(local.scale.cast<float>()); });
-  for (auto& track : frames.rotations) {
-    for (std::size_t k = 1; k < track.values.size(); ++k) {
-      if (track.values[k].coeffs().dot(track.values[k - 1].coeffs()) < 0) track.values[k].coeffs() *= -1;
-    }
-  }
+  for (auto& track : frames.rotations) keepNearSide(track.values);
   result.clip = std::move(frames);
   return result;
 }

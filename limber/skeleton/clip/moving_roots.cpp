@@ -1,6 +1,6 @@
 #include "limber/skeleton/clip/moving_roots.h"
 
-#include <algorithm>
+#include "limber/skeleton/clip/tracks.h"
 
 namespace limber {
 
@@ -8,20 +8,13 @@ namespace {
 
 constexpr float kConstant = 1e-6f;  // metres, radians and the like: what exporters round the same value to
 
-const Vec3f& numbersOf(const Vec3f& value) {
-  return value;
-}
-const Eigen::Vector4f& numbersOf(const Eigen::Quaternionf& value) {
-  return value.coeffs();
-}
-
 template <typename Value>
 bool moves(const Track<Value>& track) {
   const bool cubic = track.interpolation == Interpolation::kCubic;
-  const auto& first = numbersOf(track.values[cubic ? 1 : 0]);
+  const auto& first = coefficientsOf(track.values[cubic ? 1 : 0]);
   for (std::size_t v = 0; v < track.values.size() && track.times.size() > 1; ++v) {
     const bool isTangent = cubic && v % 3 != 1;
-    const auto& numbers = numbersOf(track.values[v]);
+    const auto& numbers = coefficientsOf(track.values[v]);
     if ((isTangent ? numbers.norm() : (numbers - first).norm()) > kConstant) return true;
   }
   return false;
@@ -31,12 +24,7 @@ bool moves(const Track<Value>& track) {
 
 std::vector<MovingRoot> movingRoots(const Skeleton& skeleton, const Clip& clip) {
   std::vector<bool> carried(skeleton.jointCount(), false);
-  const auto mark = [&](const auto& tracks) {
-    for (const auto& track : tracks) carried[track.joint] = carried[track.joint] || moves(track);
-  };
-  mark(clip.translations);
-  mark(clip.rotations);
-  mark(clip.scales);
+  forEachTrack(clip, [&](const auto& track) { carried[track.joint] = carried[track.joint] || moves(track); });
   Pose pose = restPose(skeleton);
   sampleClip(clip, 0, pose);
   const std::vector<Affine> globals = poseGlobals(skeleton, pose);

@@ -8,6 +8,7 @@
 #include "limber/skeleton/chain.h"
 #include "limber/skeleton/clip/keys/movement_keys.h"
 #include "limber/skeleton/clip/moving_roots.h"
+#include "limber/skeleton/clip/tracks.h"
 
 namespace limber {
 
@@ -15,21 +16,14 @@ namespace {
 
 constexpr double kBetweenKeys = 2.5e-7;  // of the skeleton's size, and radians: how far linear tracks may be off
 
-template <typename Value>
-const Track<Value>* trackOfJoint(const std::vector<Track<Value>>& tracks, Index joint) {
-  const auto found =
-      std::find_if(tracks.begin(), tracks.end(), [&](const auto& track) { return track.joint == joint; });
-  return found == tracks.end() ? nullptr : &*found;
-}
-
 // One joint's local transform over time, as the clip has it.
 class JointMovement {
  public:
   JointMovement(const Skeleton& skeleton, const Clip& clip, Index joint)
       : rest_(skeleton.joints[joint].rest),
-        translation_(trackOfJoint(clip.translations, joint)),
-        rotation_(trackOfJoint(clip.rotations, joint)),
-        scale_(trackOfJoint(clip.scales, joint)) {}
+        translation_(findTrack(clip.translations, joint)),
+        rotation_(findTrack(clip.rotations, joint)),
+        scale_(findTrack(clip.scales, joint)) {}
 
   Transform at(double seconds) const {
     Transform result = rest_;

@@ -6,6 +6,7 @@
 
 #include "limber/core/error.h"
 #include "limber/skeleton/clip/keys/keyframes.h"
+#include "limber/skeleton/clip/tracks.h"
 #include "limber/skeleton/motion.h"
 
 namespace limber {
@@ -68,15 +69,10 @@ class BodyPath {
 
 std::vector<float> trajectoryTimes(const Clip& clip, const BodyPath& path) {
   std::vector<double> keys = {0, clip.duration()};
-  const auto add = [&](const auto& tracks) {
-    for (const auto& track : tracks) {
-      if (!path.has(track.joint) || track.times.size() < 2) continue;
-      keys.insert(keys.end(), track.times.begin(), track.times.end());
-    }
-  };
-  add(clip.translations);
-  add(clip.rotations);
-  add(clip.scales);
+  forEachTrack(clip, [&](const auto& track) {
+    if (!path.has(track.joint) || track.times.size() < 2) return;
+    keys.insert(keys.end(), track.times.begin(), track.times.end());
+  });
   const double frame = 1 / std::max(frameRateOf(clip), kMinRate);
   std::vector<float> times;
   for (const double key : eachOnce(std::move(keys))) {

@@ -9,6 +9,7 @@
 #include "limber/core/parallel.h"
 #include "limber/skeleton/clip/keys/key_choice.h"
 #include "limber/skeleton/clip/keys/shared_times.h"
+#include "limber/skeleton/clip/tracks.h"
 #include "limber/skeleton/pose.h"
 
 namespace limber {
@@ -106,23 +107,7 @@ Track<Value> straightened(const Track<Value>& track) {
 
 template <typename Value>
 bool isSteady(const Track<Value>& track) {
-  if (track.times.size() < 2) return true;
-  const auto coefficients = [](const Value& value) {
-    if constexpr (std::is_same_v<Value, Vec3f>) {
-      return value;
-    } else {
-      return value.coeffs();
-    }
-  };
-  const bool cubic = track.interpolation == Interpolation::kCubic;
-  for (std::size_t v = 0; v < track.values.size(); ++v) {
-    const bool tangent = cubic && v % 3 != 1;
-    if (tangent ? !coefficients(track.values[v]).isZero(0)
-                : coefficients(track.values[v]) != coefficients(track.values[cubic ? 1 : 0])) {
-      return false;
-    }
-  }
-  return true;
+  return track.times.size() < 2 || isConstant(track);
 }
 
 template <typename Value>
@@ -175,16 +160,11 @@ class KeyReducer {
 
   void findFrames() {
     std::vector<float> times;
-    const auto add = [&](const auto& tracks) {
-      for (const auto& track : tracks) {
-        if (isSteady(track)) continue;
-        const auto lines = straightened(track);
-        times.insert(times.end(), lines.times.begin(), lines.times.end());
-      }
-    };
-    add(clip_.translations);
-    add(clip_.rotations);
-    add(clip_.scales);
+    forEachTrack(clip_, [&](const auto& track) {
+      if (isSteady(track)) return;
+      const auto lines = straightened(track);
+      times.insert(times.end(), lines.times.begin(), lines.times.end());
+    });
     std::sort(times.begin(), times.end());
     times.erase(std::unique(times.begin(), times.end()), times.end());
     times_.assign(times.begin(), times.end());
@@ -455,9 +435,7 @@ class KeyReducer {
       }
     }
     const auto byJoint = [](const auto& a, const auto& b) { return a.joint < b.joint; };
-    std::sort(result.translations.begin(), result.translations.end(), byJoint);
-    std::sort(result.rotations.begin(), result.rotations.end(), byJoint);
-    std::sort(result.scales.begin(), result.scales.end(), byJoint);
+    forEachKind(result, [&](auto& tracks) { std::sort(tracks.begin(), tracks.end(), byJoint); });
     keepDuration(result);
     return result;
   }
@@ -513,9 +491,7 @@ class KeyReducer {
 
   static std::size_t keysOf(const Clip& clip) {
     std::size_t keys = 0;
-    for (const auto& track : clip.translations) keys += track.times.size();
-    for (const auto& track : clip.rotations) keys += track.times.size();
-    for (const auto& track : clip.scales) keys += track.times.size();
+    forEachTrack(clip, [&](const auto& track) { keys += track.times.size(); });
     return keys;
   }
 

@@ -9,6 +9,7 @@
 
 #include "limber/core/known_error.h"
 #include "limber/skeleton/clip/keys/retime_keys.h"
+#include "limber/skeleton/clip/tracks.h"
 
 namespace limber {
 
@@ -77,17 +78,11 @@ Value splineSlope(const Keys<Value>& keys, std::size_t k) {
                 : noSlope(keys.values[k]);
 }
 
-double sizeOf(const Vec3f& slope) {
-  return slope.norm();
-}
-double sizeOf(const Rotation& slope) {
-  return slope.coeffs().norm();
-}
-
 template <class Value>
 bool sameSlope(const Value& a, const Value& b) {
   constexpr double kRounding = 1e-4;
-  return sizeOf(Value(slope(a, b, 1))) <= kRounding * (1 + sizeOf(b));
+  const double difference = coefficientsOf(slope(a, b, 1)).norm();
+  return difference <= kRounding * (1 + double{coefficientsOf(b).norm()});
 }
 
 template <class Value>
@@ -182,18 +177,6 @@ void setValue(std::vector<Track<Value>>& tracks, Index joint, const Value& rest,
   putKeys(*track, std::move(keys), track->interpolation);
 }
 
-template <class Visit>
-void eachKind(Clip& clip, const Visit& visit) {
-  visit(clip.translations);
-  visit(clip.rotations);
-  visit(clip.scales);
-}
-
-template <class Value>
-void collectTimes(const std::vector<Track<Value>>& tracks, std::vector<double>& times) {
-  for (const Track<Value>& track : tracks) times.insert(times.end(), track.times.begin(), track.times.end());
-}
-
 }  // namespace
 
 std::vector<double> eachOnce(std::vector<double> times) {
@@ -207,9 +190,7 @@ std::vector<double> eachOnce(std::vector<double> times) {
 
 std::vector<double> keyTimes(const Clip& clip) {
   std::vector<double> times;
-  collectTimes(clip.translations, times);
-  collectTimes(clip.rotations, times);
-  collectTimes(clip.scales, times);
+  forEachTrack(clip, [&](const auto& track) { times.insert(times.end(), track.times.begin(), track.times.end()); });
   return eachOnce(std::move(times));
 }
 
@@ -287,10 +268,8 @@ void setJointKey(Clip& clip, const Skeleton& skeleton, Index joint, const Transf
 }
 
 void setInterpolation(Clip& clip, Interpolation interpolation) {
-  eachKind(clip, [&](auto& tracks) {
-    for (auto& track : tracks) {
-      if (track.interpolation != interpolation) putKeys(track, keysOf(track), interpolation);
-    }
+  forEachTrack(clip, [&](auto& track) {
+    if (track.interpolation != interpolation) putKeys(track, keysOf(track), interpolation);
   });
 }
 
@@ -368,15 +347,10 @@ void setSlope(Clip& clip, const JointKey& key, const KeySlope& slope, const Quat
 
 std::vector<JointKeyTimes> keyTimesOfJoints(const Clip& clip) {
   std::map<Index, std::vector<double>> ofJoint;
-  const auto collect = [&](const auto& tracks) {
-    for (const auto& track : tracks) {
-      std::vector<double>& times = ofJoint[track.joint];
-      times.insert(times.end(), track.times.begin(), track.times.end());
-    }
-  };
-  collect(clip.translations);
-  collect(clip.rotations);
-  collect(clip.scales);
+  forEachTrack(clip, [&](const auto& track) {
+    std::vector<double>& times = ofJoint[track.joint];
+    times.insert(times.end(), track.times.begin(), track.times.end());
+  });
   std::vector<JointKeyTimes> list;
   for (auto& [joint, times] : ofJoint) list.push_back({joint, eachOnce(std::move(times))});
   return list;
@@ -419,7 +393,7 @@ void checkRetiming(std::span<const JointKey> keys, const KeyRetiming& retiming) 
 void retimeKeys(Clip& clip, std::span<const JointKey> keys, const KeyRetiming& retiming) {
   requireKeys(keyTimesOfJoints(clip), keys);
   checkRetiming(keys, retiming);
-  eachKind(clip, [&](auto& tracks) {
+  forEachKind(clip, [&](auto& tracks) {
     for (auto& track : tracks) {
       auto [times, values, tangents] = keysOf(track);
       using Value = typename decltype(values)::value_type;
@@ -450,7 +424,7 @@ void retimeKeys(Clip& clip, std::span<const JointKey> keys, const KeyRetiming& r
 
 void deleteKeys(Clip& clip, std::span<const JointKey> keys) {
   requireKeys(keyTimesOfJoints(clip), keys);
-  eachKind(clip, [&](auto& tracks) {
+  forEachKind(clip, [&](auto& tracks) {
     for (auto& track : tracks) {
       auto kept = keysOf(track);
       for (std::size_t k = kept.times.size(); k-- > 0;) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "limber/skeleton/clip/keys/key_rounding.h"
+#include "limber/skeleton/clip/tracks.h"
 
 namespace limber {
 
@@ -60,10 +61,7 @@ void MovementKeys::writeTo(Clip& clip, Index joint, bool changed) const {
   replace(clip.translations, [](const Transform& local) { return Vec3f(local.translation.cast<float>()); });
   if (!changed) return;
   replace(clip.rotations, [](const Transform& local) { return Eigen::Quaternionf(local.rotation.cast<float>()); });
-  auto& turns = clip.rotations.back().values;
-  for (std::size_t k = 1; k < turns.size(); ++k) {
-    if (turns[k].coeffs().dot(turns[k - 1].coeffs()) < 0) turns[k].coeffs() *= -1;
-  }
+  keepNearSide(clip.rotations.back().values);
   replace(clip.scales, [](const Transform& local) { return Vec3f(local.scale.cast<float>()); });
   Track<Vec3f>& scales = clip.scales.back();
   const Vec3f first = scales.values.front();
