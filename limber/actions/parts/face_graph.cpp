@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "limber/actions/parts/shortest_paths.h"
 #include "limber/core/disjoint_sets.h"
+#include "limber/core/shortest_paths.h"
 #include "limber/geometry/mesh/edge_groups.h"
 #include "limber/geometry/surface/piece_links.h"
 #include "limber/geometry/surface/surface_edges.h"

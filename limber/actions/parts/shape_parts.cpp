@@ -7,9 +7,9 @@
 
 #include <fmt/format.h>
 
-#include "limber/actions/parts/shortest_paths.h"
 #include "limber/core/error.h"
 #include "limber/core/parallel.h"
+#include "limber/core/shortest_paths.h"
 
 namespace limber {
 
@@ -61,7 +61,7 @@ class PatchGraph {
     std::vector<double> distances(neighbours_.size(), kFar);
     distances[patch] = 0;
     shortenPaths(
-        std::span(&patch, 1), distances,
+        std::span<const Index>(&patch, 1), distances,
         [&](Index at, const auto& visit) {
           for (const auto& [next, length] : neighbours_[at]) visit(next, length);
         },

@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <queue>
-#include <utility>
+
+#include "limber/core/shortest_paths.h"
 
 namespace limber {
 
@@ -50,30 +49,21 @@ std::vector<std::size_t> InsideGraph::insideNodes() const {
 
 void InsideGraph::spread(const std::vector<std::size_t>& sources, std::vector<float>& distances,
                          std::vector<std::size_t>& from) const {
-  using Item = std::pair<float, std::size_t>;
-  std::priority_queue<Item, std::vector<Item>, std::greater<>> queue;
   for (const std::size_t node : sources) {
     distances[node] = 0;
     from[node] = node;
-    queue.push({0.0f, node});
   }
-  while (!queue.empty()) {
-    const auto [length, node] = queue.top();
-    queue.pop();
-    if (length > distances[node]) continue;
+  const auto forEachNeighbour = [&](std::size_t node, const auto& visit) {
     for (std::size_t n = 0; n < steps_.size(); ++n) {
       const std::size_t next = node + steps_[n];
       const double value = distance_.value(next);
       if (value > gap_ || !isOpen(next)) continue;
       const double cost = value < 0 ? 1 : kGapCost * std::max(1.0, value / distance_.spacing());
-      const double step = lengths_[n] * distance_.spacing() * cost;
-      const float reached = length + static_cast<float>(step);
-      if (reached >= distances[next]) continue;
-      distances[next] = reached;
-      from[next] = node;
-      queue.push({reached, next});
+      visit(next, static_cast<float>(lengths_[n] * distance_.spacing() * cost));
     }
-  }
+  };
+  shortenPaths(std::span(sources), distances, forEachNeighbour,
+               [&](std::size_t node, std::size_t next) { from[next] = node; });
 }
 
 void InsideGraph::spreadToAll(std::size_t source, const std::vector<std::size_t>& inside, std::vector<float>& distances,

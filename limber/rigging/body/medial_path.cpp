@@ -1,7 +1,10 @@
 #include "limber/rigging/body/medial_path.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+
+#include "limber/core/shortest_paths.h"
 
 namespace limber {
 
@@ -32,22 +35,15 @@ std::vector<Vec3> medialPath(const BodyVolume& body, const Vec3& from, const Vec
   const std::size_t first = nearestSphere(spheres, from), last = nearestSphere(spheres, to);
   std::vector<double> length(spheres.size(), std::numeric_limits<double>::infinity());
   std::vector<std::size_t> next(spheres.size(), kNone);
-  std::vector<bool> done(spheres.size(), false);
   length[last] = 0;
-  while (!done[first]) {
-    std::size_t at = kNone;
-    for (std::size_t s = 0; s < spheres.size(); ++s) {
-      if (!done[s] && length[s] < (at == kNone ? std::numeric_limits<double>::infinity() : length[at])) at = s;
-    }
-    if (at == kNone) return {};
-    done[at] = true;
+  const auto forEachNeighbour = [&](std::size_t at, const auto& visit) {
     for (std::size_t s = 0; s < spheres.size(); ++s) {
       const double step = (spheres[s].center - spheres[at].center).norm();
-      if (length[at] + step >= length[s] || !joined(body, spheres[s], spheres[at])) continue;
-      length[s] = length[at] + step;
-      next[s] = at;
+      if (length[at] + step < length[s] && joined(body, spheres[s], spheres[at])) visit(s, step);
     }
-  }
+  };
+  shortenPaths(std::span(&last, 1), length, forEachNeighbour, [&](std::size_t at, std::size_t s) { next[s] = at; });
+  if (!std::isfinite(length[first])) return {};
   std::vector<Vec3> path;
   for (std::size_t at = first; at != kNone; at = next[at]) path.push_back(spheres[at].center);
   return path;

@@ -70,32 +70,20 @@ class QuadrupedMover {
                  std::vector<Vec3>& positions, const QuadrupedProportions& proportions)
       : body_(body), frame_(frame), pins_(pins), positions_(positions), proportions_(proportions) {}
 
-  bool frontLegs(const std::array<LegJoints, 2>& legs) {
-    LegFinder finder = follow(legs);
-    if (!finder.findParting()) return false;
-    for (int side = 0; side < 2; ++side) {
-      const Vec3 upper = upperJoint(finder, side, proportions_.shoulderUp);
-      moveTo(legs[side].upper, upper);
-      moveTo(legs[side].lower, finder.middle(side, proportions_.elbow * upper.y()));
-      moveTo(legs[side].foot, finder.middle(side, proportions_.frontFoot * upper.y()));
-      toes_[0][side] = finder.middle(side, proportions_.frontToes * upper.y());
-    }
-    return true;
+  // Fractions of the height of a leg's upper joint, but for `upper`.
+  struct LegProportions {
+    double upper = 0;  // from where the legs part to the back
+    double lower = 0, lowerForward = 0, foot = 0, toes = 0;
+  };
+
+  bool frontLegs(const std::array<LegJoints, 2>& joints) {
+    const QuadrupedProportions& p = proportions_;
+    return legs(joints, {p.shoulderUp, p.elbow, 0, p.frontFoot, p.frontToes}, toes_[0]);
   }
 
-  bool hindLegs(const std::array<LegJoints, 2>& legs) {
-    LegFinder finder = follow(legs);
-    if (!finder.findParting()) return false;
-    for (int side = 0; side < 2; ++side) {
-      const Vec3 upper = upperJoint(finder, side, proportions_.hipUp);
-      Vec3 knee = finder.middle(side, proportions_.knee * upper.y());
-      knee.z() += proportions_.kneeForward * upper.y();
-      moveTo(legs[side].upper, upper);
-      moveTo(legs[side].lower, knee);
-      moveTo(legs[side].foot, finder.middle(side, proportions_.hock * upper.y()));
-      toes_[1][side] = finder.middle(side, proportions_.hindToes * upper.y());
-    }
-    return true;
+  bool hindLegs(const std::array<LegJoints, 2>& joints) {
+    const QuadrupedProportions& p = proportions_;
+    return legs(joints, {p.hipUp, p.knee, p.kneeForward, p.hock, p.hindToes}, toes_[1]);
   }
 
   void rear(const QuadrupedJoints& joints) {
@@ -145,9 +133,20 @@ class QuadrupedMover {
   }
 
  private:
-  LegFinder follow(const std::array<LegJoints, 2>& legs) const {
-    const auto leg = [](const LegJoints& of) { return LegChain{of.upper, of.lower, of.toes}; };
-    return LegFinder(body_, frame_, positions_, leg(legs[0]), leg(legs[1]));
+  bool legs(const std::array<LegJoints, 2>& joints, const LegProportions& proportions, std::array<Vec3, 2>& toes) {
+    const auto chain = [](const LegJoints& of) { return LegChain{of.upper, of.lower, of.toes}; };
+    LegFinder finder(body_, frame_, positions_, chain(joints[0]), chain(joints[1]));
+    if (!finder.findParting()) return false;
+    for (int side = 0; side < 2; ++side) {
+      const Vec3 upper = upperJoint(finder, side, proportions.upper);
+      Vec3 lower = finder.middle(side, proportions.lower * upper.y());
+      lower.z() += proportions.lowerForward * upper.y();
+      moveTo(joints[side].upper, upper);
+      moveTo(joints[side].lower, lower);
+      moveTo(joints[side].foot, finder.middle(side, proportions.foot * upper.y()));
+      toes[side] = finder.middle(side, proportions.toes * upper.y());
+    }
+    return true;
   }
 
   // The tallest part of the inside in the column at (x, z).

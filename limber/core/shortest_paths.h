@@ -7,8 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "limber/core/types.h"
-
 namespace limber {
 
 // Dijkstra's algorithm: makes `distances` (#nodes) the shortest that lead on from the sources, whose own are set,
@@ -17,19 +15,18 @@ namespace limber {
 // forEachNeighbour  (node, visit), calls visit(neighbour, length) for each neighbour, lengths 0 or more
 // reach             (from, to), called each time that a node is reached on a shorter path
 // Cost: O(n log n) in the nodes reached, with a few neighbours each.
-template <typename ForEachNeighbour, typename Reach>
-void shortenPaths(std::span<const Index> sources, std::vector<double>& distances,
+template <typename Node, typename Distance, typename ForEachNeighbour, typename Reach>
+void shortenPaths(std::span<const Node> sources, std::vector<Distance>& distances,
                   const ForEachNeighbour& forEachNeighbour, const Reach& reach) {
-  using Entry = std::pair<double, Index>;
+  using Entry = std::pair<Distance, Node>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-  for (const Index node : sources) queue.emplace(distances[node], node);
+  for (const Node node : sources) queue.emplace(distances[node], node);
   while (!queue.empty()) {
-    const double distance = queue.top().first;
-    const Index at = queue.top().second;
+    const auto [distance, at] = queue.top();
     queue.pop();
     if (distance > distances[at]) continue;
-    forEachNeighbour(at, [&](Index next, double length) {
-      const double further = distance + length;
+    forEachNeighbour(at, [&, distance = distance, at = at](Node next, Distance length) {
+      const Distance further = distance + length;
       if (!(further < distances[next])) return;
       distances[next] = further;
       reach(at, next);
