@@ -11,6 +11,7 @@
 #include "limber/rigging/weights/weight_method.h"
 #include "limber/samples/model_builder.h"
 #include "limber/samples/model_recipe.h"
+#include "limber/skeleton/placed_skeleton.h"
 
 namespace limber {
 
@@ -49,20 +50,15 @@ const JointStart kFlyingSides[] = {{"wing_upper", "chest", {0.070, 0.490, 0.060}
                                    {"toes_end", "toes", {0.134, 0.025, -0.120}}};
 
 Skeleton flyingSkeleton() {
-  Skeleton skeleton;
-  std::vector<Vec3> positions;
+  PlacedSkeleton skeleton;
   const auto add = [&](const JointStart& start, const std::string& suffix, double side) {
-    Joint& joint = skeleton.joints.emplace_back();
-    joint.name = start.name + suffix;
-    joint.parent = skeleton.find(start.parent);
-    if (!joint.parent) joint.parent = skeleton.find(start.parent + suffix);
-    positions.emplace_back(side * start.position.x(), start.position.y(), start.position.z());
-    joint.rest.translation = joint.parent ? Vec3(positions.back() - positions[*joint.parent]) : positions.back();
+    skeleton.add(start.name + suffix, skeleton.has(start.parent) ? start.parent : start.parent + suffix,
+                 {side * start.position.x(), start.position.y(), start.position.z()});
   };
   for (const JointStart& start : kFlyingTrunk) add(start, "", 1);
   for (const JointStart& start : kFlyingSides) add(start, ".L", 1);
   for (const JointStart& start : kFlyingSides) add(start, ".R", -1);
-  return skeleton;
+  return skeleton.take();
 }
 
 // A swing about one axis: the joint's mean angle, and how far it goes to and fro with the wings; radians.

@@ -9,8 +9,8 @@
 #include "limber/core/text/numbers.h"
 #include "limber/samples/motions/motion_recipes.h"
 #include "limber/samples/motions/smooth_path.h"
-#include "limber/samples/placed_skeleton.h"
 #include "limber/skeleton/ik/solvers/two_bone.h"
+#include "limber/skeleton/placed_skeleton.h"
 
 namespace limber {
 

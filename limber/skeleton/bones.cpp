@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "limber/skeleton/chain.h"
 #include "limber/skeleton/skeleton.h"
 
 namespace limber {
@@ -17,10 +18,7 @@ constexpr double kLongestFree = 2.5;  // medians: the longest bone whose end no 
 class BoneDrawer {
  public:
   explicit BoneDrawer(const Skeleton& skeleton)
-      : skeleton_(skeleton), globals_(restGlobals(skeleton)), children_(skeleton.jointCount()) {
-    for (Index j = 0; j < skeleton.jointCount(); ++j) {
-      if (skeleton.joints[j].parent) children_[*skeleton.joints[j].parent].push_back(j);
-    }
+      : skeleton_(skeleton), globals_(restGlobals(skeleton)), children_(childrenOf(skeleton)) {
     findAxis();
     findMedianLength();
   }

@@ -9,6 +9,7 @@
 
 #include "limber/character/anatomy/anatomy.h"
 #include "limber/core/text/numbers.h"
+#include "limber/skeleton/chain.h"
 
 namespace limber {
 
@@ -25,10 +26,7 @@ constexpr int kMaxMoments = 100;          // frames of each clip; 20 to 1000; bo
 // #J, the joint in which each joint's bone ends: the only child, or the only one that has children itself. Twist joints
 // and tips beside it carry nothing.
 std::vector<std::optional<Index>> boneEnds(const Skeleton& skeleton) {
-  std::vector<std::vector<Index>> children(skeleton.jointCount());
-  for (Index j = 0; j < skeleton.jointCount(); ++j) {
-    if (skeleton.joints[j].parent) children[*skeleton.joints[j].parent].push_back(j);
-  }
+  const std::vector<std::vector<Index>> children = childrenOf(skeleton);
   std::vector<std::optional<Index>> ends(skeleton.jointCount());
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
     std::vector<Index> below = children[j];

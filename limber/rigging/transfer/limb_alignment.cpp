@@ -10,6 +10,7 @@
 #include "limber/core/parallel.h"
 #include "limber/core/rotation.h"
 #include "limber/core/rotation_fit.h"
+#include "limber/skeleton/chain.h"
 
 namespace limber {
 
@@ -61,10 +62,7 @@ class Alignment {
       box.add(rest_.back());
     }
     minSquare_ = 1e-6 * box.size().squaredNorm() + 1e-300;
-    children_.resize(rest_.size());
-    for (Index j = 0; j < skeleton.jointCount(); ++j) {
-      if (skeleton.joints[j].parent) children_[*skeleton.joints[j].parent].push_back(j);
-    }
+    children_ = childrenOf(skeleton);
     for (const JointLandmark& landmark : landmarks) target_[landmark.joint] = landmark.position;
   }
 

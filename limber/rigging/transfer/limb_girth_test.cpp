@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "limber/geometry/mesh/testing/shapes.h"
 #include "limber/rigging/transfer/testing/capsule_person.h"
 
 namespace limber {

@@ -82,11 +82,6 @@ SkinWeights finish(const InfluenceTable& table) {
 
 WeightResult boneHeatWeights(const TriMesh& mesh, std::span<const Bone> bones, const WeightOptions& options,
                              Progress& progress) {
-  return boneHeatWeightsWith(BoneHeatOptions{}, mesh, bones, options, progress);
-}
-
-WeightResult boneHeatWeightsWith(const BoneHeatOptions& heat, const TriMesh& mesh, std::span<const Bone> bones,
-                                 const WeightOptions& options, Progress& progress) {
   checkWeightArguments(mesh, bones, options);
   WeightResult result;
 
@@ -96,7 +91,7 @@ WeightResult boneHeatWeightsWith(const BoneHeatOptions& heat, const TriMesh& mes
   if (std::optional<WeightResult> parts = jointedPieceWeights(mesh, piece, pieceCount, bones, options, progress)) {
     return std::move(*parts);
   }
-  HeatProblem problem = setUp(heat, mesh, bones, piece);
+  HeatProblem problem = setUp({}, mesh, bones, piece);
   if (!problem.sawBone) {
     result.warnings.add("no-bone-in-sight", "no bone is in sight of any vertex, so each vertex took the nearest bone");
   }

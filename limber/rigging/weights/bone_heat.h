@@ -34,8 +34,6 @@ struct BoneHeatOptions {
 // solves (HeatSolver).
 WeightResult boneHeatWeights(const TriMesh& mesh, std::span<const Bone> bones, const WeightOptions& options,
                              Progress& progress);
-WeightResult boneHeatWeightsWith(const BoneHeatOptions& heat, const TriMesh& mesh, std::span<const Bone> bones,
-                                 const WeightOptions& options, Progress& progress);
 
 // The weights before any cut, #V x (highest joint + 1), without bridging: rows of vertices in pieces that see no bone
 // are 0. For tests and comparisons; memory is that of a dense matrix.

@@ -13,7 +13,7 @@
 
 #include "limber/core/text/numbers.h"
 #include "limber/samples/motions/motion_recipes.h"
-#include "limber/samples/placed_skeleton.h"
+#include "limber/skeleton/placed_skeleton.h"
 
 namespace limber {
 

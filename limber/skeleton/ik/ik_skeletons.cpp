@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "limber/core/error.h"
+#include "limber/skeleton/placed_skeleton.h"
 
 namespace limber {
 
@@ -53,16 +54,6 @@ const BoneStart kSides[] = {
     {"LittleDistal", "LittleIntermediate", {0.806, 1.397, -0.048}},
 };
 
-void addBone(Skeleton& skeleton, std::vector<Vec3>& positions, const std::string& name, const std::string& parent,
-             const Vec3& position) {
-  Joint joint;
-  joint.name = name;
-  joint.parent = skeleton.find(parent);
-  joint.rest.translation = joint.parent ? Vec3(position - positions[*joint.parent]) : position;
-  skeleton.joints.push_back(joint);
-  positions.push_back(position);
-}
-
 }  // namespace
 
 Skeleton straightChain(Index joints, double length) {
@@ -79,20 +70,18 @@ Skeleton straightChain(Index joints, double length) {
 }
 
 Skeleton practiceHumanoid() {
-  Skeleton skeleton;
-  std::vector<Vec3> positions;
-  for (const BoneStart& bone : kTrunk) addBone(skeleton, positions, bone.name, bone.parent, bone.position);
+  PlacedSkeleton skeleton;
+  for (const BoneStart& bone : kTrunk) skeleton.add(bone.name, bone.parent, bone.position);
   for (const char* side : {"left", "right"}) {
     const double mirror = side[0] == 'l' ? 1 : -1;
     for (const BoneStart& bone : kSides) {
       const std::string parent = bone.parent;
       const bool sided = parent != "head" && parent != "hips" && parent != "upperChest";
       const Vec3 position(mirror * bone.position.x(), bone.position.y(), bone.position.z());
-      addBone(skeleton, positions, std::string(side).append(bone.name),
-              sided ? std::string(side).append(parent) : parent, position);
+      skeleton.add(side + std::string(bone.name), sided ? side + parent : parent, position);
     }
   }
-  return skeleton;
+  return skeleton.take();
 }
 
 std::vector<IkTarget> practiceHumanoidTargets(const Skeleton& humanoid) {

@@ -27,6 +27,23 @@ inline TriMesh moved(TriMesh mesh, const Vec3f& scale, const Vec3f& offset) {
   return mesh;
 }
 
+// Each triangle cut in four, as flat as it was; further vertices come behind those there were.
+inline TriMesh cutInFour(const TriMesh& mesh) {
+  TriMesh result;
+  result.positions = mesh.positions;
+  std::map<std::pair<Index, Index>, Index> middles;
+  const auto middle = [&](Index a, Index b) {
+    const auto [it, fresh] = middles.try_emplace(std::minmax(a, b), result.vertexCount());
+    if (fresh) result.positions.push_back(0.5f * (result.positions[a] + result.positions[b]));
+    return it->second;
+  };
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const Index ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+    result.triangles.insert(result.triangles.end(), {{a, ab, ca}, {b, bc, ab}, {c, ca, bc}, {ab, bc, ca}});
+  }
+  return result;
+}
+
 // A sphere of radius 1, each level four times the triangles of the one before, from 20. Mirror symmetric in x, y and z.
 inline TriMesh icosphere(int level) {
   const float g = (1 + std::sqrt(5.0f)) / 2;
@@ -38,18 +55,9 @@ inline TriMesh icosphere(int level) {
                     {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
   for (Vec3f& p : mesh.positions) p.normalize();
   for (int i = 0; i < level; ++i) {
-    std::map<std::pair<Index, Index>, Index> middles;
-    const auto middle = [&](Index a, Index b) {
-      const auto [it, fresh] = middles.try_emplace(std::minmax(a, b), mesh.vertexCount());
-      if (fresh) mesh.positions.push_back((mesh.positions[a] + mesh.positions[b]).normalized());
-      return it->second;
-    };
-    std::vector<Triangle> finer;
-    for (const Triangle& t : mesh.triangles) {
-      const Index ab = middle(t[0], t[1]), bc = middle(t[1], t[2]), ca = middle(t[2], t[0]);
-      finer.insert(finer.end(), {{t[0], ab, ca}, {t[1], bc, ab}, {t[2], ca, bc}, {ab, bc, ca}});
-    }
-    mesh.triangles = std::move(finer);
+    const auto known = static_cast<std::ptrdiff_t>(mesh.positions.size());
+    mesh = cutInFour(mesh);
+    std::for_each(mesh.positions.begin() + known, mesh.positions.end(), [](Vec3f& p) { p.normalize(); });
   }
   return mesh;
 }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -90,23 +89,6 @@ template <typename Map>
 TriMesh mapped(TriMesh mesh, const Map& map) {
   for (Vec3f& p : mesh.positions) p = Vec3(map(Vec3(p.cast<double>()))).template cast<float>();
   return mesh;
-}
-
-// Each triangle cut in four, as flat as it was; further vertices come behind those there were.
-inline TriMesh cutInFour(const TriMesh& mesh) {
-  TriMesh result;
-  result.positions = mesh.positions;
-  std::map<std::pair<Index, Index>, Index> middles;
-  const auto middle = [&](Index a, Index b) {
-    const auto [it, fresh] = middles.try_emplace(std::minmax(a, b), result.vertexCount());
-    if (fresh) result.positions.push_back(0.5f * (result.positions[a] + result.positions[b]));
-    return it->second;
-  };
-  for (const auto& [a, b, c] : mesh.triangles) {
-    const Index ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
-    result.triangles.insert(result.triangles.end(), {{a, ab, ca}, {b, bc, ab}, {c, ca, bc}, {ab, bc, ca}});
-  }
-  return result;
 }
 
 }  // namespace limber::testing

@@ -12,7 +12,7 @@ namespace limber {
 // Joints in one space, each after its parent; the rest pose turns nothing.
 class PlacedSkeleton {
  public:
-  // parent    its name; empty for the root
+  // parent    its name; empty for a root
   // position  metres
   void add(const std::string& name, const std::string& parent, const Vec3& position) {
     Joint joint;
@@ -23,6 +23,7 @@ class PlacedSkeleton {
     skeleton_.joints.push_back(std::move(joint));
   }
 
+  bool has(const std::string& name) const { return skeleton_.find(name).has_value(); }
   Skeleton take() { return std::move(skeleton_); }
 
  private:
