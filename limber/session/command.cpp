@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <string>
 #include <type_traits>
 #include <utility>
 
@@ -19,373 +20,50 @@ namespace {
 
 constexpr int kCommandsVersion = 2;  // 1 knew no motions that are put on as they are added
 
-// In the order of the variant. The formatter would put each on a line of its own.
-// clang-format off
-constexpr std::array<std::string_view, 62> kNames = {
-    "open_sample",        "open_file",     "set_handles",       "choose_methods", "pin_joint",
-    "unpin_joint",        "begin_drag",    "update_drag",       "turn_drag",      "move_drag",
-    "end_drag",           "cancel_drag",   "set_ik",            "set_target",     "clear_target",
-    "set_limits",         "reset_joint",   "reset_pose",        "mirror_pose",    "set_rest_pose",
-    "rename_joint",       "add_motion",    "add_sample_motion", "retarget",       "set_contact",
-    "add_clip",           "remove_clip",   "rename_clip",       "choose_clip",    "set_time",
-    "set_key",            "edit_keys",     "delete_keys",       "set_joint_key",  "set_interpolation",
-    "set_tangents",       "paste_keys",    "paint_weights",     "lock_weights",   "mirror_weights",
-    "add_joint",          "delete_joint",  "reparent_joint",    "place_joint",    "set_turn",
-    "apply_pose",         "apply_tasks",   "undo",              "redo",           "add_sample",
-    "add_file",           "remove_member", "choose_member",     "rename_member",  "place_member",
-    "attach_member",      "detach_member", "set_clock",         "set_deformer",   "transfer_rig",
-    "rig_from_animation", "join_clips"};
-// clang-format on
-static_assert(kNames.size() == std::variant_size_v<Command>);
+template <class E>
+using Word = std::pair<E, std::string_view>;
 
-// The fields of each command, said once for reading and writing.
-template <class Visitor, class C>
-void visitFields(Visitor&, C&) {}  // those that have none
-template <class Visitor>
-void visitFields(Visitor& field, OpenSample& c) {
-  field("name", c.name);
-  field("limbs_follow", c.limbsFollow);
+constexpr auto wordsOf(DragMode) {
+  return std::to_array<Word<DragMode>>({{DragMode::kMove, "move"}, {DragMode::kTurn, "turn"}});
 }
-template <class Visitor>
-void visitFields(Visitor& field, OpenFile& c) {
-  field("file", c.file);
-  field("limbs_follow", c.limbsFollow);
+constexpr auto wordsOf(MirrorFrom) {
+  return std::to_array<Word<MirrorFrom>>(
+      {{MirrorFrom::kBoth, "both"}, {MirrorFrom::kLeft, "left"}, {MirrorFrom::kRight, "right"}});
 }
-template <class Visitor>
-void visitFields(Visitor& field, SetHandles& c) {
-  field("count", c.count);
+constexpr auto wordsOf(PaintMode) {
+  return std::to_array<Word<PaintMode>>({{PaintMode::kAdd, "add"},
+                                         {PaintMode::kSubtract, "subtract"},
+                                         {PaintMode::kSmooth, "smooth"},
+                                         {PaintMode::kReplace, "replace"}});
 }
-template <class Visitor>
-void visitFields(Visitor& field, ChooseMethods& c) {
-  field("rigger", c.rigger);
-  field("skinning", c.skinning);
+constexpr auto wordsOf(Interpolation) {
+  return std::to_array<Word<Interpolation>>(
+      {{Interpolation::kStep, "step"}, {Interpolation::kLinear, "linear"}, {Interpolation::kCubic, "cubic"}});
 }
-template <class Visitor>
-void visitFields(Visitor& field, PinJoint& c) {
-  field("joint", c.joint);
-  field("position", c.position);
+constexpr auto wordsOf(ContactChange) {
+  return std::to_array<Word<ContactChange>>(
+      {{ContactChange::kPlanted, "planted"}, {ContactChange::kFree, "free"}, {ContactChange::kFound, "found"}});
 }
-template <class Visitor>
-void visitFields(Visitor& field, UnpinJoint& c) {
-  field("joint", c.joint);
-}
-template <class Visitor>
-void visitFields(Visitor& field, BeginDrag& c) {
-  field("joint", c.joint);
-  field("mode", c.mode);
-  field("ray", c.ray);
-  field("view", c.view);
-  field("with", c.with);
-  field("mirrored", c.mirrored);
-}
-template <class Visitor>
-void visitFields(Visitor& field, UpdateDrag& c) {
-  field("ray", c.ray);
-  field("view", c.view);
-  field("snap", c.snap);
-}
-template <class Visitor>
-void visitFields(Visitor& field, TurnDrag& c) {
-  field("axis", c.axis);
-  field("degrees", c.degrees);
-}
-template <class Visitor>
-void visitFields(Visitor& field, MoveDrag& c) {
-  field("offset", c.offset);
-  field("turn", c.turn);
-}
-template <class Visitor>
-void visitFields(Visitor& field, EndDrag& c) {
-  field("goes_on", c.goesOn);
-}
-template <class Visitor>
-void visitFields(Visitor& field, PlaceJoint& c) {
-  field("joint", c.joint);
-  field("position", c.position);
-  field("with", c.with);
-  field("mirrored", c.mirrored);
-  field("relative", c.relative);
-}
-template <class Visitor>
-void visitFields(Visitor& field, SetTurn& c) {
-  field("joint", c.joint);
-  field("turn", c.turn);
-  field("with", c.with);
-  field("mirrored", c.mirrored);
-  field("relative", c.relative);
-}
-template <class Visitor>
-void visitFields(Visitor& field, SetIk& c) {
-  field("on", c.on);
-  field("solver", c.solver);
-}
-template <class Visitor>
-void visitFields(Visitor& field, SetDeformer& c) {
-  field("deformer", c.deformer);
-}
-template <class Visitor>
-void visitFields(Visitor& field, SetTarget& c) {
-  field("joint", c.joint);
-  field("position", c.position);
-  field("with", c.with);
-}
-template <class Visitor>
-void visitFields(Visitor& field, ClearTarget& c) {
-  field("joint", c.joint);
-  field("with", c.with);
-}
-template <class Visitor>
-void visitFields(Visitor& field, SetLimits& c) {
-  field.optional("limits", c.limits);
-}
-template <class Visitor>
-void visitFields(Visitor& field, ResetJoint& c) {
-  field("joint", c.joint);
-  field("with", c.with);
-}
-template <class Visitor>
-void visitFields(Visitor& field, MirrorPose& c) {
-  field("from", c.from);
+constexpr auto wordsOf(KeyTangents) {
+  return std::to_array<Word<KeyTangents>>(
+      {{KeyTangents::kAuto, "auto"}, {KeyTangents::kFlat, "flat"}, {KeyTangents::kFree, "free"}});
 }
 
-template <class Visitor>
-void visitFields(Visitor& field, ApplyPose& c) {
-  field("pose", c.pose);
-  field("joints", c.joints);
-  field("mirrored", c.mirrored);
-}
-template <class Visitor>
-void visitFields(Visitor& field, ApplyTasks& c) {
-  field("tasks", c.tasks);
-  field("root_moves", c.rootMoves);
-}
-template <class Visitor>
-void visitFields(Visitor& field, RenameJoint& c) {
-  field("joint", c.joint);
-  field("name", c.name);
-}
-template <class Visitor>
-void visitFields(Visitor& field, PaintWeights& c) {
-  field.optional("joint", c.joint);
-  field("mode", c.mode);
-  field("strength", c.strength);
-  field("radius", c.radius);
-  field("mirrored", c.mirrored);
-  field("dabs", c.dabs);
-}
-template <class Visitor>
-void visitFields(Visitor& field, LockWeights& c) {
-  field("joint", c.joint);
-  field("on", c.on);
-  field("with", c.with);
-}
-template <class Visitor>
-void visitFields(Visitor& field, MirrorWeights& c) {
-  field("from", c.from);
-}
-template <class Visitor>
-void visitFields(Visitor& field, AddJoint& c) {
-  field("parent", c.parent);
-  field("position", c.position);
-  field.optional("name", c.name);
-}
-template <class Visitor>
-void visitFields(Visitor& field, DeleteJoint& c) {
-  field("joint", c.joint);
-}
-template <class Visitor>
-void visitFields(Visitor& field, ReparentJoint& c) {
-  field("joint", c.joint);
-  field("parent", c.parent);
-}
-template <class Visitor>
-void visitFields(Visitor& field, AddMotion& c) {
-  field("file", c.file);
-  field("retarget", c.retarget);
-}
-template <class Visitor>
-void visitFields(Visitor& field, AddSampleMotion& c) {
-  field("name", c.name);
-  field("retarget", c.retarget);
-}
-template <class Visitor>
-void visitFields(Visitor& field, RetargetMotion& c) {
-  field("motion", c.motion);
-  field.optional("clip", c.clip);
-  field("method", c.method);
-  field.optional("map", c.map);
-  field("reach", c.reach);
-  field("contacts", c.contacts);
-}
-template <class Visitor>
-void visitFields(Visitor& field, SetContact& c) {
-  field("foot", c.foot);
-  field("from", c.from);
-  field("to", c.to);
-  field("contact", c.contact);
-}
-template <class Visitor>
-void visitFields(Visitor& field, JoinClips& c) {
-  field("clips", c.clips);
-  field("seconds", c.seconds);
-  field.optional("into", c.into);
-}
-template <class Visitor>
-void visitFields(Visitor& field, AddClip& c) {
-  field("clip", c.clip);
-}
-template <class Visitor>
-void visitFields(Visitor& field, RemoveClip& c) {
-  field("clip", c.clip);
-}
-template <class Visitor>
-void visitFields(Visitor& field, RenameClip& c) {
-  field("clip", c.clip);
-  field("name", c.name);
-}
-template <class Visitor>
-void visitFields(Visitor& field, ChooseClip& c) {
-  field.optional("clip", c.clip);
-}
-template <class Visitor>
-void visitFields(Visitor& field, SetTime& c) {
-  field("seconds", c.seconds);
-}
-template <class Visitor>
-void visitFields(Visitor& field, SetKey& c) {
-  field("span", c.span);
-}
-template <class Visitor>
-void visitFields(Visitor& field, EditKeys& c) {
-  field("keys", c.keys);
-  field("shift", c.shift);
-  field("scale", c.scale);
-  field("pivot", c.pivot);
-  field("copy", c.copy);
-}
-template <class Visitor>
-void visitFields(Visitor& field, DeleteKeys& c) {
-  field("keys", c.keys);
-}
-template <class Visitor>
-void visitFields(Visitor& field, SetJointKey& c) {
-  field("joint", c.joint);
-  field("seconds", c.seconds);
-  field("turn", c.turn);
-  field("offset", c.offset);
-}
-template <class Visitor>
-void visitFields(Visitor& field, SetInterpolation& c) {
-  field("interpolation", c.interpolation);
-}
-template <class Visitor>
-void visitFields(Visitor& field, SetTangents& c) {
-  field("keys", c.keys);
-  field("tangents", c.tangents);
-  field("turn", c.turn);
-  field("offset", c.offset);
-}
-template <class Visitor>
-void visitFields(Visitor& field, PasteKeys& c) {
-  field("keys", c.keys);
+template <class E>
+std::string_view wordFor(E value) {
+  const auto words = wordsOf(value);
+  return std::find_if(words.begin(), words.end(), [&](const Word<E>& word) { return word.first == value; })->second;
 }
 
-template <class Visitor>
-void visitFields(Visitor& field, AddSample& c) {
-  field("name", c.name);
-  field("limbs_follow", c.limbsFollow);
-  field("as_prop", c.asProp);
-}
-template <class Visitor>
-void visitFields(Visitor& field, AddFile& c) {
-  field("file", c.file);
-  field("limbs_follow", c.limbsFollow);
-  field("as_prop", c.asProp);
-}
-template <class Visitor>
-void visitFields(Visitor& field, RemoveMember& c) {
-  field("member", c.member);
-}
-template <class Visitor>
-void visitFields(Visitor& field, ChooseMember& c) {
-  field("member", c.member);
-}
-template <class Visitor>
-void visitFields(Visitor& field, RenameMember& c) {
-  field("member", c.member);
-  field("name", c.name);
-}
-template <class Visitor>
-void visitFields(Visitor& field, PlaceMember& c) {
-  field("member", c.member);
-  field("position", c.position);
-  field("turn", c.turn);
-  field("scale", c.scale);
-}
-template <class Visitor>
-void visitFields(Visitor& field, AttachMember& c) {
-  field("member", c.member);
-  field("to", c.to);
-  field("joint", c.joint);
-  field("snap", c.snap);
-}
-template <class Visitor>
-void visitFields(Visitor& field, DetachMember& c) {
-  field("member", c.member);
-}
-template <class Visitor>
-void visitFields(Visitor& field, SetClock& c) {
-  field("seconds", c.seconds);
-}
-template <class Visitor>
-void visitFields(Visitor& field, TransferRig& c) {
-  field("file", c.file);
-}
-template <class Visitor>
-void visitFields(Visitor& field, RigFromAnimation& c) {
-  field("bones", c.bones);
-}
+template <class T, class Visitor>
+concept HasFields = requires(T value, Visitor visitor) {
+  value.fields(visitor);
+};
 
-constexpr std::array<std::pair<DragMode, std::string_view>, 2> kDragModes = {
-    {{DragMode::kMove, "move"}, {DragMode::kTurn, "turn"}}};
-constexpr std::array<std::pair<MirrorFrom, std::string_view>, 3> kMirrorSides = {
-    {{MirrorFrom::kBoth, "both"}, {MirrorFrom::kLeft, "left"}, {MirrorFrom::kRight, "right"}}};
-
-constexpr std::array<std::pair<PaintMode, std::string_view>, 4> kPaintModes = {{{PaintMode::kAdd, "add"},
-                                                                                {PaintMode::kSubtract, "subtract"},
-                                                                                {PaintMode::kSmooth, "smooth"},
-                                                                                {PaintMode::kReplace, "replace"}}};
-
-constexpr std::array<std::pair<Interpolation, std::string_view>, 3> kInterpolations = {
-    {{Interpolation::kStep, "step"}, {Interpolation::kLinear, "linear"}, {Interpolation::kCubic, "cubic"}}};
-
-constexpr std::array<std::pair<ContactChange, std::string_view>, 3> kContactChanges = {
-    {{ContactChange::kPlanted, "planted"}, {ContactChange::kFree, "free"}, {ContactChange::kFound, "found"}}};
-
-constexpr std::array<std::pair<KeyTangents, std::string_view>, 3> kTangents = {
-    {{KeyTangents::kAuto, "auto"}, {KeyTangents::kFlat, "flat"}, {KeyTangents::kFree, "free"}}};
-
-const auto& wordsOf(KeyTangents) {
-  return kTangents;
-}
-const auto& wordsOf(DragMode) {
-  return kDragModes;
-}
-const auto& wordsOf(MirrorFrom) {
-  return kMirrorSides;
-}
-const auto& wordsOf(PaintMode) {
-  return kPaintModes;
-}
-const auto& wordsOf(ContactChange) {
-  return kContactChanges;
-}
-const auto& wordsOf(Interpolation) {
-  return kInterpolations;
-}
-
-Json numbersJson(const Vec3& v) {
-  return Json::array({v.x(), v.y(), v.z()});
+// Commands without fields have no list of them.
+template <class C, class Visitor>
+void visitFields(C& command, Visitor& visitor) {
+  if constexpr (HasFields<C, Visitor>) command.fields(visitor);
 }
 
 class Writer {
@@ -393,118 +71,55 @@ class Writer {
   explicit Writer(Json& json) : json_(json) {}
 
   template <class T>
-  void operator()(const char* key, const T& value) {
-    if constexpr (std::is_enum_v<T>) {
-      for (const auto& [known, word] : wordsOf(value)) {
-        if (known == value) json_[key] = std::string(word);
-      }
-    } else if constexpr (std::is_same_v<T, Vec3>) {
-      json_[key] = numbersJson(value);
-    } else if constexpr (std::is_same_v<T, Ray>) {
-      json_[key] = {{"origin", numbersJson(value.origin)}, {"direction", numbersJson(value.direction)}};
-    } else if constexpr (std::is_same_v<T, std::vector<KeyOfJoint>>) {
-      json_[key] = Json::array();
-      for (const KeyOfJoint& one : value) json_[key].push_back({{"joint", one.joint}, {"seconds", one.seconds}});
-    } else if constexpr (std::is_same_v<T, std::vector<PoseKey>>) {
-      json_[key] = Json::array();
-      for (const PoseKey& one : value) {
-        json_[key].push_back({{"pose", one.pose}, {"joints", one.joints}, {"seconds", one.seconds}});
-      }
-    } else if constexpr (std::is_same_v<T, std::vector<SurfaceDab>>) {
-      Json& list = json_[key] = Json::array();
-      for (const SurfaceDab& dab : value) list.push_back(Json::array({dab.triangle, dab.u, dab.v}));
-    } else {
-      json_[key] = value;
-    }
+  Writer& operator()(const char* key, const T& value) {
+    json_[key] = jsonOf(value);
+    return *this;
   }
-  void optional(const char* key, const std::string& value) { (*this)(key, value); }
+  Writer& optional(const char* key, const std::string& value) { return (*this)(key, value); }
 
  private:
+  template <class T>
+  static Json jsonOf(const T& value) {
+    if constexpr (std::is_enum_v<T>) {
+      return std::string(wordFor(value));
+    } else if constexpr (std::is_same_v<T, Vec3>) {
+      return Json::array({value.x(), value.y(), value.z()});
+    } else if constexpr (std::is_same_v<T, SurfaceDab>) {
+      return Json::array({value.triangle, value.u, value.v});
+    } else if constexpr (HasFields<T, Writer>) {
+      Json json;
+      Writer writer(json);
+      T copy = value;
+      copy.fields(writer);
+      return json;
+    } else {
+      return value;
+    }
+  }
+  template <class T>
+  static Json jsonOf(const std::vector<T>& values) {
+    Json list = Json::array();
+    for (const T& value : values) list.push_back(jsonOf(value));
+    return list;
+  }
+
   Json& json_;
 };
-
-Vec3 readVector(const JsonView& object, const char* key, const Vec3& byDefault) {
-  const JsonView array = object.array(key);
-  if (!array.exists()) return byDefault;
-  if (array.size() != 3) array.fail("is not three numbers");
-  return {array[0].asNumber(), array[1].asNumber(), array[2].asNumber()};
-}
 
 class Reader {
  public:
   explicit Reader(const JsonView& object) : object_(object) {}
 
-  // A text that has no default must be there.
-  void operator()(const char* key, std::string& value) {
-    if (!object_.member(key).exists() && value.empty()) object_.fail(fmt::format("has no \"{}\"", key));
-    optional(key, value);
+  template <class T>
+  Reader& operator()(const char* key, T& value) {
+    known_.push_back(key);
+    read(key, value);
+    return *this;
   }
-  void optional(const char* key, std::string& value) {
+  Reader& optional(const char* key, std::string& value) {
     known_.push_back(key);
     value = object_.text(key, value);
-  }
-  void operator()(const char* key, Index& value) {
-    known_.push_back(key);
-    value = object_.index(key, kNoIndex).value_or(value);
-  }
-  void operator()(const char* key, double& value) {
-    known_.push_back(key);
-    value = object_.number(key, value);
-  }
-  void operator()(const char* key, bool& value) {
-    known_.push_back(key);
-    value = object_.flag(key, value);
-  }
-  void operator()(const char* key, std::vector<std::string>& value) {
-    known_.push_back(key);
-    const JsonView list = object_.array(key);
-    for (std::size_t i = 0; i < list.size(); ++i) {
-      if (!list[i].json().is_string()) list[i].fail("is not a text");
-      value.push_back(list[i].json().get<std::string>());
-    }
-  }
-  void operator()(const char* key, Vec3& value) {
-    known_.push_back(key);
-    value = readVector(object_, key, value);
-  }
-  void operator()(const char* key, Ray& value) {
-    known_.push_back(key);
-    const JsonView ray = object_.object(key);
-    value = {readVector(ray, "origin", value.origin), readVector(ray, "direction", value.direction)};
-  }
-  void operator()(const char* key, std::vector<KeyOfJoint>& value) {
-    readEntries(key, value, [](Reader& entry, KeyOfJoint& one) {
-      entry.optional("joint", one.joint);
-      entry("seconds", one.seconds);
-    });
-  }
-  void operator()(const char* key, std::vector<PoseKey>& value) {
-    readEntries(key, value, [](Reader& entry, PoseKey& one) {
-      entry("pose", one.pose);
-      entry("joints", one.joints);
-      entry("seconds", one.seconds);
-    });
-  }
-  // [[triangle, u, v], ...]
-  void operator()(const char* key, std::vector<SurfaceDab>& value) {
-    known_.push_back(key);
-    const JsonView list = object_.array(key);
-    for (std::size_t i = 0; i < list.size(); ++i) {
-      if (!list[i].json().is_array() || list[i].size() != 3) list[i].fail("is not a triangle with two numbers");
-      value.push_back({list[i][0].asIndex(kNoIndex), list[i][1].asNumber(), list[i][2].asNumber()});
-    }
-  }
-  template <class E>
-  std::enable_if_t<std::is_enum_v<E>> operator()(const char* key, E& value) {
-    known_.push_back(key);
-    if (!object_.member(key).exists()) return;
-    const std::string_view word = object_.text(key);
-    for (const auto& [mode, name] : wordsOf(value)) {
-      if (word != name) continue;
-      value = mode;
-      return;
-    }
-    object_.member(key).fail(fmt::format("cannot be '{}'", word));
+    return *this;
   }
 
   void refuseOthers() const {
@@ -515,19 +130,61 @@ class Reader {
   }
 
  private:
-  template <class Entry, class Fields>
-  void readEntries(const char* key, std::vector<Entry>& value, const Fields& fields) {
-    known_.push_back(key);
-    const JsonView list = object_.array(key);
-    if (!list.exists()) object_.fail(fmt::format("has no \"{}\"", key));
-    for (std::size_t i = 0; i < list.size(); ++i) {
-      const JsonView item = list[i];
-      Reader entry(item);
-      Entry one;
-      fields(entry, one);
-      entry.refuseOthers();
-      value.push_back(std::move(one));
+  // A text that has no default must be there.
+  void read(const char* key, std::string& value) const {
+    if (value.empty()) require(key);
+    value = object_.text(key, value);
+  }
+  void read(const char* key, Index& value) const { value = object_.index(key, kNoIndex).value_or(value); }
+  void read(const char* key, double& value) const { value = object_.number(key, value); }
+  void read(const char* key, bool& value) const { value = object_.flag(key, value); }
+  void read(const char* key, Vec3& value) const {
+    const JsonView array = object_.array(key);
+    if (!array.exists()) return;
+    if (array.size() != 3) array.fail("is not three numbers");
+    value = {array[0].asNumber(), array[1].asNumber(), array[2].asNumber()};
+  }
+  void read(const char* key, Ray& value) const {
+    const JsonView ray = object_.object(key);
+    Reader reader(ray);
+    value.fields(reader);
+  }
+  template <class E>
+  requires std::is_enum_v<E>
+  void read(const char* key, E& value) const {
+    if (!object_.member(key).exists()) return;
+    const std::string_view text = object_.text(key);
+    for (const auto& [known, word] : wordsOf(value)) {
+      if (text != word) continue;
+      value = known;
+      return;
     }
+    object_.member(key).fail(fmt::format("cannot be '{}'", text));
+  }
+  template <class Item>
+  void read(const char* key, std::vector<Item>& value) const {
+    if constexpr (HasFields<Item, Reader>) require(key);
+    const JsonView list = object_.array(key);
+    for (std::size_t i = 0; i < list.size(); ++i) readItem(list[i], value.emplace_back());
+  }
+
+  static void readItem(const JsonView& json, std::string& item) {
+    if (!json.json().is_string()) json.fail("is not a text");
+    item = json.json().get<std::string>();
+  }
+  static void readItem(const JsonView& json, SurfaceDab& item) {
+    if (!json.json().is_array() || json.size() != 3) json.fail("is not a triangle with two numbers");
+    item = {json[0].asIndex(kNoIndex), json[1].asNumber(), json[2].asNumber()};
+  }
+  template <HasFields<Reader> Item>
+  static void readItem(const JsonView& json, Item& item) {
+    Reader entry(json);
+    item.fields(entry);
+    entry.refuseOthers();
+  }
+
+  void require(const char* key) const {
+    if (!object_.member(key).exists()) object_.fail(fmt::format("has no \"{}\"", key));
   }
 
   const JsonView& object_;
@@ -539,62 +196,83 @@ class TypeWriter {
  public:
   explicit TypeWriter(std::string& text) : text_(text) {}
 
-  void operator()(const char* key, const std::string& value) { member(key, value.empty(), "string"); }
-  void optional(const char* key, const std::string&) { member(key, false, "string"); }
-  void operator()(const char* key, bool) { member(key, false, "boolean"); }
-  void operator()(const char* key, Index) { member(key, false, "number"); }
-  void operator()(const char* key, double) { member(key, false, "number"); }
-  void operator()(const char* key, const Vec3&) { member(key, false, "Vector"); }
-  void operator()(const char* key, const Ray&) { member(key, false, "Ray"); }
-  void operator()(const char* key, const std::vector<std::string>&) { member(key, false, "string[]"); }
-  void operator()(const char* key, const std::vector<KeyOfJoint>&) { member(key, true, "KeyOfJoint[]"); }
-  void operator()(const char* key, const std::vector<PoseKey>&) { member(key, true, "PoseKey[]"); }
-  void operator()(const char* key, const std::vector<SurfaceDab>&) { member(key, false, "SurfaceDab[]"); }
+  template <class T>
+  TypeWriter& operator()(const char* key, const T& value) {
+    return member(key, isNeeded(value), typeOf(value));
+  }
+  TypeWriter& optional(const char* key, const std::string& value) { return member(key, false, typeOf(value)); }
+
+ private:
+  static bool isNeeded(const std::string& value) { return value.empty(); }
+  template <HasFields<TypeWriter> T>
+  static bool isNeeded(const std::vector<T>&) {
+    return true;
+  }
+  template <class T>
+  static bool isNeeded(const T&) {
+    return false;
+  }
+
+  static std::string typeOf(const std::string&) { return "string"; }
+  static std::string typeOf(bool) { return "boolean"; }
+  static std::string typeOf(Index) { return "number"; }
+  static std::string typeOf(double) { return "number"; }
+  static std::string typeOf(const Vec3&) { return "Vector"; }
+  static std::string typeOf(const Ray&) { return "Ray"; }
+  static std::string typeOf(const KeyOfJoint&) { return "KeyOfJoint"; }
+  static std::string typeOf(const PoseKey&) { return "PoseKey"; }
+  static std::string typeOf(const SurfaceDab&) { return "SurfaceDab"; }
+  template <class T>
+  static std::string typeOf(const std::vector<T>&) {
+    return typeOf(T()) + "[]";
+  }
   template <class E>
-  std::enable_if_t<std::is_enum_v<E>> operator()(const char* key, const E& value) {
+  requires std::is_enum_v<E>
+  static std::string typeOf(const E& value) {
     std::string words;
     for (const auto& [known, word] : wordsOf(value)) {
       words += fmt::format("{}'{}'", words.empty() ? "" : " | ", word);
     }
-    member(key, false, words);
+    return words;
   }
 
- private:
-  void member(const char* key, bool isNeeded, std::string_view type) {
+  TypeWriter& member(const char* key, bool isNeeded, std::string_view type) {
     text_ += fmt::format("; {}{}: {}", key, isNeeded ? "" : "?", type);
+    return *this;
   }
 
   std::string& text_;
 };
 
-template <std::size_t... I>
-std::string unionOfCommands(std::index_sequence<I...>) {
-  std::string text;
-  const auto add = [&]<std::size_t N>(std::integral_constant<std::size_t, N>) {
-    text += fmt::format("\n  | {{ do: '{}'", kNames[N]);
-    TypeWriter writer(text);
-    std::variant_alternative_t<N, Command> command;
-    visitFields(writer, command);
-    text += " }";
-  };
-  (add(std::integral_constant<std::size_t, I>()), ...);
-  return text;
+template <class C>
+std::string typeOfCommand() {
+  std::string text = fmt::format("\n  | {{ do: '{}'", C::kName);
+  TypeWriter writer(text);
+  C command;
+  visitFields(command, writer);
+  return text + " }";
 }
 
-// Reads the alternative of that name, trying one after the other.
-template <std::size_t I = 0>
-std::optional<Command> readNamed(std::string_view name, const JsonView& object) {
-  if constexpr (I == std::variant_size_v<Command>) {
-    return std::nullopt;
-  } else {
-    using C = std::variant_alternative_t<I, Command>;
-    if (name != kNames[I]) return readNamed<I + 1>(name, object);
-    C command;
-    Reader reader(object);
-    visitFields(reader, command);
-    reader.refuseOthers();
-    return command;
-  }
+template <class... C>
+std::string unionOf(std::type_identity<std::variant<C...>>) {
+  return (typeOfCommand<C>() + ...);
+}
+
+template <class C>
+C readFields(const JsonView& object) {
+  C command;
+  Reader reader(object);
+  visitFields(command, reader);
+  reader.refuseOthers();
+  return command;
+}
+
+template <class... C>
+std::optional<Command> readNamed(std::string_view name, const JsonView& object,
+                                 std::type_identity<std::variant<C...>>) {
+  std::optional<Command> command;
+  static_cast<void>(((name == C::kName && (command = readFields<C>(object), true)) || ...));
+  return command;
 }
 
 // The method "online", which older lists name, kept feet and hands in contact as limb-ik does.
@@ -611,22 +289,18 @@ std::optional<Command> readFormer(std::string_view name, const JsonView& object)
     SetTurn turn;
     Vec3 axis = Vec3::UnitY();
     double degrees = 0;
-    field("joint", turn.joint);
-    field("axis", axis);
-    field("degrees", degrees);
+    field("joint", turn.joint)("axis", axis)("degrees", degrees);
     turn.turn = degrees * axis.normalized();
     turn.relative = true;
     command = turn;
   } else if (name == "move_joint") {
     PlaceJoint move;
-    field("joint", move.joint);
-    field("offset", move.position);
+    field("joint", move.joint)("offset", move.position);
     move.relative = true;
     command = move;
   } else if (name == "move_key") {
     double from = 0, to = 0;
-    field("from", from);
-    field("to", to);
+    field("from", from)("to", to);
     command = EditKeys{.keys = {{{}, from}}, .shift = to - from};
   } else if (name == "delete_key") {
     KeyOfJoint key;
@@ -639,7 +313,7 @@ std::optional<Command> readFormer(std::string_view name, const JsonView& object)
 
 Command readCommand(const JsonView& object) {
   const std::string_view name = object.text("do");
-  std::optional<Command> command = readNamed(name, object);
+  std::optional<Command> command = readNamed(name, object, std::type_identity<Command>());
   if (!command) command = readFormer(name, object);
   if (!command) object.fail(fmt::format("no command is called '{}'", name));
   bringUpToDate(*command);
@@ -649,20 +323,17 @@ Command readCommand(const JsonView& object) {
 }  // namespace
 
 std::string_view keyTangentsName(KeyTangents tangents) {
-  const auto known =
-      std::find_if(kTangents.begin(), kTangents.end(), [&](const auto& entry) { return entry.first == tangents; });
-  return known->second;
+  return wordFor(tangents);
 }
 
 std::string_view commandName(const Command& command) {
-  return kNames[command.index()];
+  return std::visit([](const auto& c) { return c.kName; }, command);
 }
 
 Json commandToJson(const Command& command) {
   Json json = {{"do", std::string(commandName(command))}};
   Writer writer(json);
-  Command copy = command;
-  std::visit([&](auto& c) { visitFields(writer, c); }, copy);
+  std::visit([&](auto c) { visitFields(c, writer); }, command);
   return json;
 }
 
@@ -679,7 +350,7 @@ std::string commandTypes() {
          "/** A triangle of the surface, and where on it: (1 - u - v, u, v) of its corners. */\n"
          "export type SurfaceDab = [triangle: number, u: number, v: number];\n"
          "export type Command =" +
-         unionOfCommands(std::make_index_sequence<std::variant_size_v<Command>>()) + ";\n";
+         unionOf(std::type_identity<Command>()) + ";\n";
 }
 
 std::string commandsToJson(std::span<const Command> commands) {
