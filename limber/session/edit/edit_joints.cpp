@@ -9,6 +9,7 @@
 #include "limber/document/rig/joint_edit.h"
 #include "limber/document/scene/node_edit.h"
 #include "limber/rigging/weights/weight_edit.h"
+#include "limber/session/edit/pose_commands.h"
 #include "limber/session/refuse.h"
 #include "limber/session/scene/session_io.h"
 #include "limber/skeleton/clip/keys/keyframes.h"
@@ -282,6 +283,42 @@ void takeJointEdit(SessionState& state, const JointEdit& edit) {
   state.rig = edit.rig;
   setLimits(state, limits);
   authored(state);
+}
+
+void apply(const AddJoint& c, SessionState& next) {
+  const Skeleton& skeleton = next.rig->skeleton();
+  std::string name = c.name;
+  for (int number = 1; name.empty() || (c.name.empty() && skeleton.find(name)); ++number) {
+    name = fmt::format("joint_{}", number);
+  }
+  takeJointEdit(next, withJoint(*next.rig, next.pose, requireJoint(next, c.parent), c.position, name));
+}
+
+void apply(const DeleteJoint& c, SessionState& next) {
+  takeJointEdit(next, withoutJoint(*next.rig, requireJoint(next, c.joint)));
+}
+
+void apply(const ReparentJoint& c, SessionState& next) {
+  takeJointEdit(next, withJointOn(*next.rig, requireJoint(next, c.joint), requireJoint(next, c.parent)));
+}
+
+void apply(const LockWeights& c, SessionState& next) {
+  for (const Index joint : jointsOf(next, c.joint, c.with)) {
+    const std::string& name = next.rig->skeleton().joints[joint].name;
+    if (c.on) {
+      next.locked.insert(name);
+    } else {
+      next.locked.erase(name);
+    }
+  }
+}
+
+// Limits speak of joints by name.
+void apply(const RenameJoint& c, SessionState& next) {
+  next.rig = renameJoint(*next.rig, requireJoint(next, c.joint), c.name);
+  if (next.limits) next.limitsText = limitsToJson(*next.limits, next.rig->skeleton());
+  if (next.locked.erase(c.joint) > 0) next.locked.insert(c.name);
+  authored(next);
 }
 
 }  // namespace limber

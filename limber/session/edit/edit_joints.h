@@ -32,4 +32,10 @@ JointEdit withJointOn(const RiggedModel& model, Index joint, Index parent);
 // were, in clips at every key.
 void takeJointEdit(SessionState& state, const JointEdit& edit);
 
+void apply(const AddJoint& c, SessionState& next);
+void apply(const DeleteJoint& c, SessionState& next);
+void apply(const ReparentJoint& c, SessionState& next);
+void apply(const RenameJoint& c, SessionState& next);
+void apply(const LockWeights& c, SessionState& next);
+
 }  // namespace limber

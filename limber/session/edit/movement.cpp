@@ -12,10 +12,13 @@
 #include "limber/motion/limbs/body/skin_tube.h"
 #include "limber/motion/retarget/retarget_clip.h"
 #include "limber/motion/retarget/retarget_method.h"
+#include "limber/samples/motions/sample_motions.h"
 #include "limber/session/edit/apply_pose.h"
 #include "limber/session/edit/clip_curves.h"
+#include "limber/session/edit/pose_commands.h"
 #include "limber/session/edit/pose_transfer.h"
 #include "limber/session/refuse.h"
+#include "limber/session/scene/session_io.h"
 #include "limber/skeleton/clip/clip_edit.h"
 #include "limber/skeleton/clip/keys/keyframes.h"
 
@@ -286,7 +289,7 @@ void addMotion(Movement& movement, Motion motion) {
   movement.motions.push_back(std::make_shared<const Motion>(std::move(motion)));
 }
 
-void retargetMotion(Movement& movement, const RiggedModel& rig, const RetargetMotion& command) {
+void apply(const RetargetMotion& command, Movement& movement, const RiggedModel& rig) {
   ClipSource source{requireMotion(movement, command.motion), 0, command, {}};
   const Motion& motion = *source.motion;
   source.clip = clipOfMotion(motion, command.clip);
@@ -311,7 +314,7 @@ void retargetMotion(Movement& movement, const RiggedModel& rig, const RetargetMo
   showOther(movement, movement.clips.size() - 1);
 }
 
-void joinClips(Movement& movement, const RiggedModel& rig, const JoinClips& command) {
+void apply(const JoinClips& command, Movement& movement, const RiggedModel& rig) {
   std::optional<std::size_t> into;
   if (!command.into.empty()) into = requireClip(movement, command.into);
   if (into && !movement.clips[*into].sequence) refuse(fmt::format("the clip '{}' is no sequence", command.into));
@@ -353,7 +356,7 @@ void joinClips(Movement& movement, const RiggedModel& rig, const JoinClips& comm
   showOther(movement, at);
 }
 
-void setContactOf(Movement& movement, const RiggedModel& rig, const SetContact& command) {
+void apply(const SetContact& command, Movement& movement, const RiggedModel& rig) {
   SessionClip& chosen = requireChosen(movement);
   if (!chosen.source) refuse(fmt::format("the clip '{}' is from no motion", chosen.clip->name));
   if (!(command.from >= 0 && command.to >= command.from)) refuse("a contact ends before it begins");
@@ -425,16 +428,17 @@ void moveToRig(Movement& movement, const std::shared_ptr<const RiggedModel>& fro
   }
 }
 
-void addClip(Movement& movement, const std::string& name) {
-  requireFreeName(movement, name);
+void apply(const AddClip& command, SessionState& state) {
+  Movement& movement = state.movement;
+  requireFreeName(movement, command.clip);
   auto clip = std::make_shared<Clip>();
-  clip->name = name;
+  clip->name = command.clip;
   movement.clips.push_back({{std::move(clip), {}}});
   showOther(movement, movement.clips.size() - 1);
 }
 
-void removeClip(Movement& movement, const std::string& name) {
-  const std::size_t clip = requireClip(movement, name);
+void apply(const RemoveClip& command, Movement& movement, const RiggedModel&) {
+  const std::size_t clip = requireClip(movement, command.clip);
   movement.clips.erase(movement.clips.begin() + static_cast<std::ptrdiff_t>(clip));
   if (movement.chosen == clip) {
     movement.chosen.reset();
@@ -444,7 +448,9 @@ void removeClip(Movement& movement, const std::string& name) {
   }
 }
 
-void renameClip(Movement& movement, const std::string& from, const std::string& to) {
+void apply(const RenameClip& command, SessionState& state) {
+  Movement& movement = state.movement;
+  const auto& [from, to] = command;
   const std::size_t at = requireClip(movement, from);
   if (from == to) return;
   requireFreeName(movement, to);
@@ -465,27 +471,30 @@ void setTime(Movement& movement, double seconds) {
   movement.seconds = seconds;
 }
 
-void setKeyOf(Movement& movement, const Skeleton& skeleton, const Pose& pose, double span) {
-  SessionClip& chosen = requireChosen(movement);
-  const double seconds = movement.seconds;
+void apply(const SetKey& command, SessionState& state) {
+  SessionClip& chosen = requireChosen(state.movement);
+  const Skeleton& skeleton = state.rig->skeleton();
+  const Pose& pose = state.pose;
+  const double seconds = state.movement.seconds;
   if (!chosen.base) return editOwnKeys(chosen, skeleton, [&](Clip& clip) { setKey(clip, skeleton, pose, seconds); });
   const Pose base = clipPose(*chosen.base, skeleton, seconds), shown = clipPose(*chosen.clip, skeleton, seconds);
-  editLayer(chosen, skeleton, [&](ClipLayer& layer) { setKey(layer, base, shown, pose, seconds, span); });
+  editLayer(chosen, skeleton, [&](ClipLayer& layer) { setKey(layer, base, shown, pose, seconds, command.span); });
 }
 
-void retimeKeysOf(Movement& movement, const Skeleton& skeleton, const EditKeys& command) {
+void apply(const EditKeys& command, Movement& movement, const RiggedModel& rig) {
   const KeyRetiming retiming{command.shift, command.scale, command.pivot, command.copy};
-  editNamedKeys(requireChosen(movement), skeleton, command.keys,
+  editNamedKeys(requireChosen(movement), rig.skeleton(), command.keys,
                 [&](auto& keyed, const std::vector<JointKey>& keys) { retimeKeys(keyed, keys, retiming); });
 }
 
-void deleteKeysOf(Movement& movement, const Skeleton& skeleton, const std::vector<KeyOfJoint>& named) {
-  editNamedKeys(requireChosen(movement), skeleton, named,
+void apply(const DeleteKeys& command, Movement& movement, const RiggedModel& rig) {
+  editNamedKeys(requireChosen(movement), rig.skeleton(), command.keys,
                 [](auto& keyed, const std::vector<JointKey>& keys) { deleteKeys(keyed, keys); });
 }
 
 // Where the layer has no key at that moment, the new one comes and goes as the joint's nearest does.
-void setJointKeyOf(Movement& movement, const Skeleton& skeleton, const SetJointKey& command) {
+void apply(const SetJointKey& command, Movement& movement, const RiggedModel& rig) {
+  const Skeleton& skeleton = rig.skeleton();
   SessionClip& chosen = requireChosen(movement);
   const JointKey key = keyNamed(skeleton, {command.joint, command.seconds});
   if (!command.turn.allFinite() || !command.offset.allFinite()) refuse("a key's value is no number");
@@ -518,7 +527,8 @@ KeySlope slopeOf(const Transform& local, const Transform& rest, const SetTangent
 
 }  // namespace
 
-void setTangentsOf(Movement& movement, const Skeleton& skeleton, const SetTangents& command) {
+void apply(const SetTangents& command, Movement& movement, const RiggedModel& rig) {
+  const Skeleton& skeleton = rig.skeleton();
   SessionClip& chosen = requireChosen(movement);
   if (chosen.base) refuse("corrections of recorded motion have no tangents", chosen.clip->name);
   if (!command.turn.allFinite() || !command.offset.allFinite()) refuse("a tangent is no number");
@@ -531,7 +541,7 @@ void setTangentsOf(Movement& movement, const Skeleton& skeleton, const SetTangen
   });
 }
 
-void pasteKeysOf(Movement& movement, const RiggedModel& rig, const PasteKeys& command) {
+void apply(const PasteKeys& command, Movement& movement, const RiggedModel& rig) {
   SessionClip& chosen = requireChosen(movement);
   const Skeleton& skeleton = rig.skeleton();
   if (command.keys.empty()) refuse("no keys are given");
@@ -555,8 +565,30 @@ void pasteKeysOf(Movement& movement, const RiggedModel& rig, const PasteKeys& co
   }
 }
 
-void setInterpolationOf(Movement& movement, const Skeleton& skeleton, Interpolation interpolation) {
-  editOwnKeys(requireChosen(movement), skeleton, [&](Clip& clip) { setInterpolation(clip, interpolation); });
+void apply(const SetInterpolation& command, Movement& movement, const RiggedModel& rig) {
+  editOwnKeys(requireChosen(movement), rig.skeleton(),
+              [&](Clip& clip) { setInterpolation(clip, command.interpolation); });
+}
+
+void addMotionTo(SessionState& state, Motion motion, bool retarget) {
+  addMotion(state.movement, std::move(motion));
+  if (!retarget) return;
+  RetargetMotion command;
+  command.motion = state.movement.motions.back()->name;
+  apply(command, state.movement, *state.rig);
+  show(state);
+}
+
+void apply(const AddSampleMotion& command, SessionState& state) {
+  addMotionTo(state, makeSampleMotion(command.name), command.retarget);
+}
+
+void apply(const ChooseClip& command, SessionState& state) {
+  chooseClip(state.movement, command.clip);
+  if (state.movement.chosen) return show(state);
+  state.pose = state.rig->home;
+  holdStandingFeet(state);
+  authored(state);
 }
 
 std::vector<JointKeyTimes> editableKeys(const ClipContent& clip) {

@@ -16,6 +16,8 @@
 
 namespace limber {
 
+struct SessionState;
+
 // How a retargeted clip was made.
 struct ClipSource {
   std::shared_ptr<const Motion> motion;
@@ -90,34 +92,39 @@ void addMotion(Movement& movement, Motion motion);
 // joints, the keys of all others are transferred (transferClip), layers too. The chosen clip and the moment stay.
 void moveToRig(Movement& movement, const std::shared_ptr<const RiggedModel>& from,
                const std::shared_ptr<const RiggedModel>& to, Progress& progress);
-// Makes the clip, or makes it anew below its layer where that clip of that motion is on the model already, and chooses
-// it. Throws as
-// matchSkeletons and skeletonMapFromJson do.
-void retargetMotion(Movement& movement, const RiggedModel& rig, const RetargetMotion& command);
-// Makes the chosen clip anew with what the user says of a foot. Throws where the clip is from no motion, or keeps no
-// such foot.
-void setContactOf(Movement& movement, const RiggedModel& rig, const SetContact& command);
-// Chooses what it makes. Of a sequence that is joined anew, clips that it had and that were removed since are left out
-// (warning "removed-clips"). Warns and throws as joinMotions does.
-void joinClips(Movement& movement, const RiggedModel& rig, const JoinClips& command);
-void addClip(Movement& movement, const std::string& name);
-void removeClip(Movement& movement, const std::string& name);
-void renameClip(Movement& movement, const std::string& from, const std::string& to);
 // An empty name chooses none. The moment goes back to 0.
 void chooseClip(Movement& movement, const std::string& name);
 void setTime(Movement& movement, double seconds);
 
+// Makes the clip, or makes it anew below its layer where that clip of that motion is on the model already, and chooses
+// it. Throws as matchSkeletons and skeletonMapFromJson do.
+void apply(const RetargetMotion& command, Movement& movement, const RiggedModel& rig);
+// Makes the chosen clip anew with what the user says of a foot. Throws where the clip is from no motion, or keeps no
+// such foot.
+void apply(const SetContact& command, Movement& movement, const RiggedModel& rig);
+// Chooses what it makes. Of a sequence that is joined anew, clips that it had and that were removed since are left out
+// (warning "removed-clips"). Warns and throws as joinMotions does.
+void apply(const JoinClips& command, Movement& movement, const RiggedModel& rig);
+// A clip without keys shows nothing yet: the pose stays.
+void apply(const AddClip& command, SessionState& state);
+void apply(const RemoveClip& command, Movement& movement, const RiggedModel& rig);
+void apply(const RenameClip& command, SessionState& state);
+void apply(const ChooseClip& command, SessionState& state);
+void apply(const AddSampleMotion& command, SessionState& state);
+// The motion, and where that is asked for its first clip on the model.
+void addMotionTo(SessionState& state, Motion motion, bool retarget);
+
 // Of the chosen clip. Keys of recorded motion are those of its layer; only where that has none at a moment, and no joint
 // is named, are those of the motion itself moved or taken out.
-void setKeyOf(Movement& movement, const Skeleton& skeleton, const Pose& pose, double span);
-void retimeKeysOf(Movement& movement, const Skeleton& skeleton, const EditKeys& command);
-void deleteKeysOf(Movement& movement, const Skeleton& skeleton, const std::vector<KeyOfJoint>& keys);
-void setJointKeyOf(Movement& movement, const Skeleton& skeleton, const SetJointKey& command);
-void setInterpolationOf(Movement& movement, const Skeleton& skeleton, Interpolation interpolation);
+void apply(const SetKey& command, SessionState& state);
+void apply(const EditKeys& command, Movement& movement, const RiggedModel& rig);
+void apply(const DeleteKeys& command, Movement& movement, const RiggedModel& rig);
+void apply(const SetJointKey& command, Movement& movement, const RiggedModel& rig);
+void apply(const SetInterpolation& command, Movement& movement, const RiggedModel& rig);
 // Of keys of a clip made by hand.
-void setTangentsOf(Movement& movement, const Skeleton& skeleton, const SetTangents& command);
+void apply(const SetTangents& command, Movement& movement, const RiggedModel& rig);
 // Throws as appliedPose does.
-void pasteKeysOf(Movement& movement, const RiggedModel& rig, const PasteKeys& command);
+void apply(const PasteKeys& command, Movement& movement, const RiggedModel& rig);
 
 // What can be edited: all keys of a clip made by hand, those of the layer of recorded motion.
 std::vector<JointKeyTimes> editableKeys(const ClipContent& clip);
