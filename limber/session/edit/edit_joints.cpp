@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "limber/character/matching/rest_form.h"
 #include "limber/document/clip/moving_parents.h"
 #include "limber/document/rig/joint_edit.h"
 #include "limber/document/scene/node_edit.h"
@@ -181,23 +180,6 @@ class ClipCarrier {
   std::vector<Index> moved_;                // of `to`, that hang elsewhere
 };
 
-// The map by the joints' names; matched anew where one is gone, and none where nothing matches.
-std::optional<ClipSource> carriedSource(ClipSource source, const Skeleton& from, const Skeleton& to) {
-  const Skeleton& moving = source.motion->skeleton;
-  try {
-    source.map = skeletonMapFromJson(skeletonMapToJson(source.map, moving, from), moving, to);
-    return source;
-  } catch (const Error&) {
-    source.command.map.clear();
-  }
-  try {
-    source.map = matchMotion(*source.motion, to);
-    return source;
-  } catch (const Error&) {
-    return std::nullopt;
-  }
-}
-
 // Limits are turned as the joints' parents are.
 std::string carriedLimits(const JointLimits& limits, const Skeleton& from, const Skeleton& to,
                           const std::vector<std::optional<Index>>& before) {
@@ -270,7 +252,9 @@ void takeJointEdit(SessionState& state, const JointEdit& edit) {
     entry.clip = std::make_shared<const Clip>(carrier.carry(*shown, *shown));
     if (entry.base) entry.base = std::make_shared<const Clip>(carrier.carry(*entry.base, *shown));
     entry.layer = carrier.carry(entry.layer);
-    if (entry.source) entry.source = carriedSource(*std::move(entry.source), from, to);
+    if (!entry.source) continue;
+    const std::string map = skeletonMapToJson(entry.source->map, entry.source->motion->skeleton, from);
+    entry.source = sourceOn(*entry.source, map, *edit.rig);
   }
   std::vector<std::optional<Index>> after(from.jointCount());
   for (Index j = 0; j < edit.before.size(); ++j) {

@@ -221,28 +221,6 @@ bool onlyNamesDiffer(const Skeleton& one, const Skeleton& other) {
       [](const Joint& a, const Joint& b) { return a.parent == b.parent && sameTransform(a.rest, b.rest); });
 }
 
-// The same source for other joints. A map made by hand holds where all its joints are there still, else joints are
-// matched anew; none where they do not match.
-std::optional<ClipSource> sourceOn(const ClipContent& authored, const Skeleton& skeleton) {
-  if (!authored.source) return std::nullopt;
-  ClipSource source = *authored.source;
-  const Skeleton& moving = source.motion->skeleton;
-  try {
-    if (!source.command.map.empty()) {
-      source.map = skeletonMapFromJson(source.command.map, moving, skeleton);
-      return source;
-    }
-  } catch (const Error&) {
-    source.command.map.clear();
-  }
-  try {
-    source.map = matchMotion(*source.motion, skeleton);
-    return source;
-  } catch (const Error&) {
-    return std::nullopt;
-  }
-}
-
 }  // namespace
 
 Movement movementOf(const std::vector<std::shared_ptr<const Clip>>& own) {
@@ -372,6 +350,23 @@ void apply(const SetContact& command, Movement& movement, const RiggedModel& rig
   makeAnew(chosen, rig, std::move(source));
 }
 
+std::optional<ClipSource> sourceOn(ClipSource source, const std::string& map, const RiggedModel& rig) {
+  try {
+    if (!map.empty()) {
+      source.map = skeletonMapFromJson(map, source.motion->skeleton, rig.skeleton());
+      return source;
+    }
+  } catch (const Error&) {
+    source.command.map.clear();
+  }
+  try {
+    source.map = matchMotion(*source.motion, rig.character.reading());
+    return source;
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
 namespace {
 
 using Transfers = std::map<const RiggedModel*, PoseTransfer>;
@@ -393,7 +388,7 @@ ClipContent contentOn(const AuthoredClip& authored, Transfers& transfers,
                       const std::shared_ptr<const RiggedModel>& to) {
   const Skeleton& skeleton = to->skeleton();
   ClipContent made = authored.content;
-  made.source = sourceOn(authored.content, skeleton);
+  if (made.source) made.source = sourceOn(*made.source, made.source->command.map, *to);
   if (onlyNamesDiffer(authored.rig->skeleton(), skeleton)) return made;
   const PoseTransfer& transfer = transfers.try_emplace(authored.rig.get(), *authored.rig, *to).first->second;
   const auto transferred = [&](const Clip& clip) {

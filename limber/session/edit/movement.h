@@ -88,6 +88,9 @@ Pose shownPose(const Movement& movement, const Skeleton& skeleton);
 // taken, a key where there is none, nothing chosen) and changes nothing.
 
 void addMotion(Movement& movement, Motion motion);
+// The same source for other joints. `map`, if any, holds where all its joints are there still, else joints are matched
+// anew; none where they do not match.
+std::optional<ClipSource> sourceOn(ClipSource source, const std::string& map, const RiggedModel& rig);
 // The clips for another rig of the same model: those of motions are retargeted anew where the motion fits the new
 // joints, the keys of all others are transferred (transferClip), layers too. The chosen clip and the moment stay.
 void moveToRig(Movement& movement, const std::shared_ptr<const RiggedModel>& from,
