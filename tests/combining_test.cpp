@@ -36,7 +36,7 @@ MixFigures figuresOf(const MixBody& body, const Clip& clip, double rate) {
   for (std::size_t f = 0; f < globals.size(); ++f) body.globals(frames.poses[f], globals[f]);
   const auto begin = static_cast<std::size_t>(kLeadIn * rate);
   double pathLength = 0, resting = 0, jerk = 0, steps = 0;
-  for (const Leg& leg : body.legs()) {
+  for (const LegSpec& leg : body.legs()) {
     for (const Index point : {leg.end, leg.toes.value_or(leg.end)}) {
       std::vector<Vec3> path;
       std::vector<double> above;

@@ -142,6 +142,9 @@ std::vector<AnimalLeg> animalLegs(const SkeletonMap& map, const Skeleton& source
       legs.push_back(*leg);
     }
   }
+  for (AnimalLeg& leg : legs) {
+    leg.footDriven = legs.size() == 2 || map.isQuadruped() || (leg.source.carrier && leg.target.carrier);
+  }
   return legs;
 }
 

@@ -19,6 +19,9 @@ struct LegJoints {
 struct AnimalLeg {
   LegJoints source, target;
   bool fore = false;  // of two pairs the foremost
+  // Its foot follows the source's, whatever the joint angles: on roots of their own, on legs whose joints are others,
+  // or where there are but two to stand on.
+  bool footDriven = false;
 };
 
 // Of the matched joints of those that are no people, in rest pose.

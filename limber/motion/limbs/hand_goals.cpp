@@ -49,7 +49,7 @@ HandGoals::HandGoals(const RetargetSetup& setup, const RootPositioner& root) : s
   for (const Side side : kSides) {
     const auto limb = findLimb(setup_, root, PartKind::kArm, side);
     if (!limb) continue;
-    arms_.push_back(*limb);
+    arms_.push_back({*limb, {}});
     const Side other = opposite(side);
     std::vector<Surface>& surfaces = surfaces_.emplace_back();
     const auto add = [&](const BodyPart& from, const BodyPart& to, const Gauge& gauge, const TouchDistances& at) {
@@ -87,9 +87,9 @@ void HandGoals::addSurface(const BodyPart& from, const BodyPart& to, const Gauge
 }
 
 // Where touches want the hand, against where it is.
-Vec3 HandGoals::touchOf(const Limb& arm, const std::vector<Surface>& surfaces, const BodyFrame& source,
+Vec3 HandGoals::touchOf(const Arm& arm, const std::vector<Surface>& surfaces, const BodyFrame& source,
                         const BodyFrame& target) const {
-  const Vec3 hand = source.positions[arm.sourceEnd];
+  const Vec3 hand = source.positions[arm.spec.sourceEnd];
   Vec3 sum = Vec3::Zero();
   double weights = 0, missing = 1;
   for (const Surface& surface : surfaces) {
@@ -99,23 +99,24 @@ Vec3 HandGoals::touchOf(const Limb& arm, const std::vector<Surface>& surfaces, c
     const Vec3 away = (hand - begin - along * bone) / surface.gauge.source;
     const Vec3 from = target.positions[surface.target[0]], to = target.positions[surface.target[1]];
     const double weight = closeness(away.norm(), surface.distances);
-    sum += weight * (from + along * (to - from) + surface.gauge.target * away - arm.goal);
+    sum += weight * (from + along * (to - from) + surface.gauge.target * away - arm.goal.position);
     weights += weight;
     missing *= 1 - weight;
   }
   return weights > 0 ? Vec3((1 - missing) / weights * sum) : sum;
 }
 
-void HandGoals::softenReach(Limb& arm, const BodyFrame& target) const {
-  const Vec3 shoulder = target.positions[arm.upper], own = target.positions[arm.end] - shoulder;
-  const Vec3 displacement = arm.goal - shoulder;
-  const double far = std::max(own.norm(), kSoftReach * arm.length), near = std::min(own.norm(), kSoftFold * arm.length);
+void HandGoals::softenReach(Arm& arm, const BodyFrame& target) const {
+  const Vec3 shoulder = target.positions[arm.spec.upper], own = target.positions[arm.spec.end] - shoulder;
+  const Vec3 displacement = arm.goal.position - shoulder;
+  const double far = std::max(own.norm(), kSoftReach * arm.spec.length),
+               near = std::min(own.norm(), kSoftFold * arm.spec.length);
   const double wanted = displacement.norm();
   if (wanted > far) {
-    arm.goal = shoulder + towards(kMaxStretch * arm.length, far, wanted) / wanted * displacement;
+    arm.goal.position = shoulder + towards(kMaxStretch * arm.spec.length, far, wanted) / wanted * displacement;
   } else if (wanted < near) {
     const Vec3 line = wanted > 0 ? displacement.normalized() : own.normalized();
-    arm.goal = shoulder + towards(kFold * near, near, wanted) * line;
+    arm.goal.position = shoulder + towards(kFold * near, near, wanted) * line;
   }
 }
 
@@ -124,27 +125,28 @@ void HandGoals::set(const BodyFrame& source, const BodyFrame& target, double sec
   const Vec3 pelvis = pelvisOf(setup_.map, MapSide::kSource, source.positions), position = setup_.positionOf(pelvis);
   std::array<Vec3, 2> touches = {Vec3::Zero(), Vec3::Zero()};
   for (std::size_t a = 0; a < arms_.size(); ++a) {
-    Limb& arm = arms_[a];
-    arm.goal = target.positions[arm.end];
-    arm.wanted = reach != 0;
-    if (arm.wanted)
-      arm.goal += reach * (position + setup_.scale * (source.positions[arm.sourceEnd] - pelvis) - arm.goal);
+    Arm& arm = arms_[a];
+    arm.goal.position = target.positions[arm.spec.end];
+    if (reach != 0)
+      arm.goal.position +=
+          reach * (position + setup_.scale * (source.positions[arm.spec.sourceEnd] - pelvis) - arm.goal.position);
     if (setup_.options.contacts) touches[a] = touchOf(arm, surfaces_[a], source, target);
   }
   if (!setup_.options.contacts) return;
   if (arms_.size() == 2) {
-    const Vec3 apart = (source.positions[arms_[1].sourceEnd] - source.positions[arms_[0].sourceEnd]) / hands_.source;
-    const Vec3 change = hands_.target * apart - (arms_[1].goal + touches[1] - arms_[0].goal - touches[0]);
+    const Vec3 apart =
+        (source.positions[arms_[1].spec.sourceEnd] - source.positions[arms_[0].spec.sourceEnd]) / hands_.source;
+    const Vec3 change =
+        hands_.target * apart - (arms_[1].goal.position + touches[1] - arms_[0].goal.position - touches[0]);
     const double weight = 0.5 * closeness(apart.norm(), kHands);
     touches[0] -= weight * change;
     touches[1] += weight * change;
   }
   for (std::size_t a = 0; a < arms_.size(); ++a) {
     Sprung& follow = follows_[a];
-    follow.drawTo(atMost(touches[a], kMaxTouch * arms_[a].length), kArmRate, seconds);
+    follow.drawTo(atMost(touches[a], kMaxTouch * arms_[a].spec.length), kArmRate, seconds);
     if (follow.value.norm() < 1e-9 * setup_.targetHipHeight) continue;
-    arms_[a].goal += follow.value;
-    arms_[a].wanted = true;
+    arms_[a].goal.position += follow.value;
     softenReach(arms_[a], target);
   }
 }

@@ -34,9 +34,9 @@ class HandGoals {
 
   // Brings a goal that stretches or folds an arm more than it is the nearer the closer it gets to what the arm can
   // reach: the elbow else snaps. set() does so.
-  void softenReach(Limb& arm, const BodyFrame& target) const;
+  void softenReach(Arm& arm, const BodyFrame& target) const;
 
-  std::vector<Limb>& arms() { return arms_; }
+  std::vector<Arm>& arms() { return arms_; }
 
  private:
   // Metres of the source and of the target by which what is touched is as thick: where motions come without a skin, the
@@ -56,11 +56,11 @@ class HandGoals {
   // None where a body lacks one of the parts.
   void addSurface(const BodyPart& from, const BodyPart& to, const Gauge& gauge, const TouchDistances& distances,
                   std::vector<Surface>& surfaces) const;
-  Vec3 touchOf(const Limb& arm, const std::vector<Surface>& surfaces, const BodyFrame& source,
+  Vec3 touchOf(const Arm& arm, const std::vector<Surface>& surfaces, const BodyFrame& source,
                const BodyFrame& target) const;
 
   const RetargetSetup& setup_;
-  std::vector<Limb> arms_;
+  std::vector<Arm> arms_;
   std::vector<std::vector<Surface>> surfaces_;  // for each arm
   std::array<Sprung, 2> follows_;               // the touches of each arm as they come and go
   Gauge hands_;                                 // of hands that touch each other

@@ -47,25 +47,25 @@ class HandGoalsTest : public ::testing::Test {
 
 TEST_F(HandGoalsTest, TouchesTakeHandsAtMostHalfAnArmFromTheirAngles) {
   double most = 0;
-  eachFrame(withShortArms(), [&](const Limb& arm, const BodyFrame& frame) {
-    most = std::max(most, (arm.goal - frame.positions[arm.end]).norm() / arm.length);
+  eachFrame(withShortArms(), [&](const Arm& arm, const BodyFrame& frame) {
+    most = std::max(most, (arm.goal.position - frame.positions[arm.spec.end]).norm() / arm.spec.length);
   });
   EXPECT_LT(most, 0.52) << "a spring may swing over a little";
   EXPECT_GT(most, 0.3) << "the head is far off";
 }
 
 TEST_F(HandGoalsTest, HandsStayAwayFromTheirShoulders) {
-  eachFrame(withShortArms(), [&](const Limb& arm, const BodyFrame& frame) {
-    const Vec3 shoulder = frame.positions[arm.upper];
-    const double own = (frame.positions[arm.end] - shoulder).norm();
-    EXPECT_GE((arm.goal - shoulder).norm(), 0.59 * std::min(own, 0.45 * arm.length));
-    EXPECT_LE((arm.goal - shoulder).norm(), std::max(own, arm.length));
+  eachFrame(withShortArms(), [&](const Arm& arm, const BodyFrame& frame) {
+    const Vec3 shoulder = frame.positions[arm.spec.upper];
+    const double own = (frame.positions[arm.spec.end] - shoulder).norm();
+    EXPECT_GE((arm.goal.position - shoulder).norm(), 0.59 * std::min(own, 0.45 * arm.spec.length));
+    EXPECT_LE((arm.goal.position - shoulder).norm(), std::max(own, arm.spec.length));
   });
 }
 
 TEST_F(HandGoalsTest, EqualBodiesTouchAsTheyDo) {
-  eachFrame(source, [&](const Limb& arm, const BodyFrame& frame) {
-    EXPECT_LT((arm.goal - frame.positions[arm.end]).norm(), 1e-9);
+  eachFrame(source, [&](const Arm& arm, const BodyFrame& frame) {
+    EXPECT_LT((arm.goal.position - frame.positions[arm.spec.end]).norm(), 1e-9);
   });
 }
 

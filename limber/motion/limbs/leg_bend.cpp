@@ -64,9 +64,8 @@ double LegBend::Chain::bend(const std::vector<Vec3>& positions) const {
   return bendAt((positions[end] - positions[upper]).norm());
 }
 
-LegBend::LegBend(const RetargetSetup& setup, const AnimalLeg& leg)
-    : source_(*setup.source, setup.sourceNeutral, leg.source),
-      target_(*setup.target, setup.targetNeutral, leg.target) {}
+LegBend::LegBend(const RetargetSetup& setup, const LegJoints& source, const LegJoints& target)
+    : source_(*setup.source, setup.sourceNeutral, source), target_(*setup.target, setup.targetNeutral, target) {}
 
 double LegBend::reach(const BodyFrame& source) const {
   const double bend = source_.bend(source.positions) + target_.atRest - source_.atRest;

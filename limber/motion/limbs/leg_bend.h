@@ -1,5 +1,5 @@
 // How far a leg reaches where it bends as the source's does. Feet that follow the source's path, whatever the joint
-// angles (Leg::footDriven), say nothing about the legs above them.
+// angles (FootDrive), say nothing about the legs above them.
 #pragma once
 
 #include <vector>
@@ -14,11 +14,11 @@ inline constexpr double kMaxBend = 2 * kPi / 3;
 
 class LegBend {
  public:
-  LegBend(const RetargetSetup& setup, const AnimalLeg& leg);
+  LegBend(const RetargetSetup& setup, const LegJoints& source, const LegJoints& target);
 
   // From the target's upper joint to its end, metres. Its knee bends by as much more or less than in its neutral pose
   // as the source's does; a leg with a hock counts as two equal bones that make up the whole chain. It comes without a
-  // kink to straight and to its most bend: kMostBend, with a hock where its longest bone lets it fold no further.
+  // kink to straight and to its most bend: kMaxBend, with a hock where its longest bone lets it fold no further.
   double reach(const BodyFrame& source) const;
 
  private:

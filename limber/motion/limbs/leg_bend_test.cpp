@@ -22,7 +22,7 @@ double reachOf(const Skeleton& one, const Skeleton& other, double raised) {
   const std::vector<Vec3>& rest = setup.targetNeutral.restPositions;
   const double bones =
       (rest[leg.target.lower] - rest[leg.target.upper]).norm() + (rest[leg.target.end] - rest[leg.target.lower]).norm();
-  return LegBend(setup, leg).reach(frame) / bones;
+  return LegBend(setup, leg.source, leg.target).reach(frame) / bones;
 }
 
 // Its knees are so far ahead of the line from hip to paw.

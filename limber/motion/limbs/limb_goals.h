@@ -9,7 +9,7 @@
 #include "limber/motion/limbs/body/pelvis.h"
 #include "limber/motion/limbs/body/tail_lift.h"
 #include "limber/motion/limbs/contacts/contact_track.h"
-#include "limber/motion/limbs/leg_bend.h"
+#include "limber/motion/limbs/contacts/foot_lock.h"
 #include "limber/motion/limbs/limb.h"
 
 namespace limber {
@@ -51,6 +51,9 @@ class LimbGoals {
   // For a target that is posed but for that.
   const TailLift& tail() const { return tail_; }
   std::vector<Leg>& legs() { return legs_; }
+  std::vector<LegSpec> specs() const;
+  // Whether any foot follows the source's (FootDrive).
+  bool feetAreDriven() const;
 
  private:
   // How fast a point of the free foot comes down, metres a second, without the recording's trembling.
@@ -64,8 +67,7 @@ class LimbGoals {
     FootLock::Frame foot;  // as its joint angles have it
     Fall ankleFall, toesFall;
     Vec3 carried = Vec3::Zero();    // by its hip
-    std::optional<LegBend> bend;    // footDriven
-    Vec3 sourceEnd = Vec3::Zero();  // footDriven: in the frame before
+    Vec3 sourceEnd = Vec3::Zero();  // of a foot-driven leg, in the frame before
   };
 
   struct Rise {
@@ -73,21 +75,17 @@ class LimbGoals {
   };
 
   Rise nextRise(const BodyFrame& target, double seconds) const;
-  void addPersonsLegs(const RootPositioner& root);
-  void addAnimalsLegs(const RootPositioner& root);
-  void addLeg(Leg leg);
   void readFoot(Leg& leg, FootState& state, const BodyFrame& source, const BodyFrame& target, double seconds) const;
-  std::optional<Index> sourceBodyOf(const AnimalLeg& leg) const;
-  Quat turnOfBody(const Leg& leg, const BodyFrame& source) const;
-  Vec3 turnedAsBody(const Vec3& displacement, const Leg& leg, const BodyFrame& source) const;
-  Vec3 footDrivenPosition(const Leg& leg, const BodyFrame& source, const BodyFrame& target) const;
-  void readFootDriven(Leg& leg, FootState& state, const BodyFrame& source, double seconds) const;
+  Quat turnOfBody(const FootDrive& drive, const BodyFrame& source) const;
+  Vec3 turnedAsBody(const Vec3& displacement, const FootDrive& drive, const BodyFrame& source) const;
+  Vec3 drivenPosition(const LegSpec& leg, const BodyFrame& source, const BodyFrame& target) const;
+  void driveFoot(Leg& leg, FootState& state, const BodyFrame& source, const BodyFrame& target, double seconds) const;
   static void followFall(double down, double seconds, Fall& fall);
   void carryFeet(const BodyFrame& target, double seconds);
   void setFoot(Leg& leg, const FootState& state, FootLock& lock, double seconds) const;
   void keepAboveGround(Leg& leg, const FootLock::Frame& foot, const FootState& state) const;
   double heightOverGround(const Leg& leg, const BodyFrame& target) const;
-  double loweredBy(double sourceGround, const Vec3& sourcePosition) const;
+  double loweredBy(const LegSpec& leg, double sourceGround, const Vec3& sourcePosition) const;
 
   const RetargetSetup& setup_;
   const RootPositioner& root_;

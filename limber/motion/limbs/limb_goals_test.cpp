@@ -32,7 +32,7 @@ double liftedHeight(double speed) {
     const double seconds = left == 10 ? 0 : kFrame;
     goals.adaptPose(source, seconds, to, target);
     goals.setFeet(source, target, seconds);
-    up = leg.goal.y() - target.positions[leg.end].y();
+    up = leg.goal.position.y() - target.positions[leg.spec.end].y();
   }
   return up;
 }
@@ -73,17 +73,17 @@ double bentBy(double lift, double sunk) {
   LimbGoals goals(setup, root);
   Leg& leg = goals.legs().front();
   Pose from = restPose(animal);
-  from.locals[leg.sourceEnd].translation.y() += lift;
+  from.locals[leg.spec.sourceEnd].translation.y() += lift;
   BodyFrame source, target;
   Pose to = restPose(bigger);
   setup.sourceKinematics.globals(from, source);
   setup.targetKinematics.globals(to, target);
   goals.adaptPose(source, 0, to, target);
   goals.setFeet(source, target, 0);
-  leg.goal = target.positions[leg.end] + Vec3(0, sunk, 0);
-  const double own = (leg.goal - target.positions[leg.upper]).norm();
+  leg.goal.position = target.positions[leg.spec.end] + Vec3(0, sunk, 0);
+  const double own = (leg.goal.position - target.positions[leg.spec.upper]).norm();
   goals.bendAsSource(leg, target);
-  return (leg.goal - target.positions[leg.upper]).norm() / own;
+  return (leg.goal.position - target.positions[leg.spec.upper]).norm() / own;
 }
 
 TEST(LimbGoals, LegsOfLiftedFeetOnRootsOfTheirOwnBendAsTheSources) {
@@ -100,7 +100,7 @@ TEST(LimbGoals, FeetGoTheWayOfASourceWithHocks) {
   const RootPositioner root(setup);
   LimbGoals goals(setup, root);
   const Leg& leg = goals.legs().front();
-  ASSERT_TRUE(leg.footDriven);
+  ASSERT_TRUE(leg.spec.drive);
   for (const double folds : {0.0, 40.0}) {
     Pose from = restPose(hocked), to = restPose(person);
     from.locals[hocked.find("leftLowerLeg").value()].rotation = limber::testing::turn(Vec3::UnitX(), folds);
@@ -110,8 +110,8 @@ TEST(LimbGoals, FeetGoTheWayOfASourceWithHocks) {
     setup.targetKinematics.globals(to, target);
     goals.adaptPose(source, 0, to, target);
     goals.setFeet(source, target, 0);
-    const double lifted = setup.scale * (source.positions[leg.sourceEnd].y() - leg.sourceAnkleGround);
-    EXPECT_NEAR(leg.goal.y() - leg.ankleGround, lifted, 0.01);
+    const double lifted = setup.scale * (source.positions[leg.spec.sourceEnd].y() - leg.spec.sourceAnkleGround);
+    EXPECT_NEAR(leg.goal.position.y() - leg.spec.ankleGround, lifted, 0.01);
     EXPECT_EQ(lifted > 0.1, folds > 0);
   }
 }
@@ -126,7 +126,7 @@ TEST(LimbGoals, FeetOfTwoLeggedAnimalsGoTheSourcesWay) {
     const RootPositioner root(setup);
     LimbGoals goals(setup, root);
     ASSERT_EQ(goals.legs().size(), legs);
-    for (const Leg& leg : goals.legs()) EXPECT_EQ(leg.footDriven, legs == 2);
+    for (const Leg& leg : goals.legs()) EXPECT_EQ(leg.spec.drive.has_value(), legs == 2);
   }
 }
 
@@ -151,7 +151,8 @@ TEST(LimbGoals, WhoTurnsRoundStandsThereAsBefore) {
   ASSERT_EQ(goals.legs().size(), 4u);
   const std::vector<Vec3>& rest = setup.targetNeutral.restPositions;
   for (const Leg& leg : goals.legs()) {
-    const Vec3 restDirection = round * (rest[leg.end] - rest[leg.upper]), goal = leg.goal - target.positions[leg.upper];
+    const Vec3 restDirection = round * (rest[leg.spec.end] - rest[leg.spec.upper]),
+               goal = leg.goal.position - target.positions[leg.spec.upper];
     EXPECT_LT((goal - restDirection).norm(), 0.01);
   }
 }

@@ -30,7 +30,7 @@ double hingeAngle(double one, double other, double opposite) {
 // first order: each joint turns the more the farther it is off the line to the end. It folds by its exact fraction of
 // the change of length: at a hock that is nearly straight, first order would be too far. It approaches straight and
 // folded the slower the nearer it comes.
-Quat hockTurn(const Limb& limb, const LimbShape& shape, const Vec3& there) {
+Quat hockTurn(const LimbSpec& limb, const LimbShape& shape, const Vec3& there) {
   const Vec3 line = shape.end.normalized(), toStart = -shape.hock, toEnd = shape.end - shape.hock;
   const double off = toStart.cross(line).norm(), kneeOff = shape.middle.cross(line).norm();
   const Vec3 normal = toStart.cross(toEnd);
@@ -46,7 +46,7 @@ Quat hockTurn(const Limb& limb, const LimbShape& shape, const Vec3& there) {
 }
 
 // Where the joint angles have the middle joint, but forward where it hardly bends.
-Vec3 jointsBend(const Limb& limb, const LimbShape& shape) {
+Vec3 jointsBend(const LimbSpec& limb, const LimbShape& shape) {
   const Vec3& line = shape.line;
   const Vec3 forward = (shape.ahead - shape.ahead.dot(line) * line).normalized();
   const Vec3 bend = shape.middle - shape.middle.dot(line) * line;
@@ -68,20 +68,20 @@ Vec3 kneePole(const LimbShape& shape, const Vec3& there) {
 
 }  // namespace
 
-void LimbShape::findBend(const Limb& limb) {
+void LimbShape::findBend(const LimbSpec& limb) {
   line = end.normalized();
   bend = limb.ownBend ? ownBend(*this) : jointsBend(limb, *this);
 }
 
-bool LimbReach::isThere(const Limb& limb, const BodyFrame& frame) {
-  return (limb.goal - frame.positions[limb.end]).norm() < 1e-9 * limb.length && limb.turn.w() == 1;
+bool LimbReach::isThere(const LimbSpec& limb, const LimbGoal& goal, const BodyFrame& frame) {
+  return (goal.position - frame.positions[limb.end]).norm() < 1e-9 * limb.length && goal.turn.w() == 1;
 }
 
-void LimbReach::reach(const Limb& limb, const Vec3* kneeAhead, BodyFrame& frame, Pose& target) const {
+void LimbReach::reach(const LimbSpec& limb, const LimbGoal& goal, BodyFrame& frame, Pose& target) const {
   const BodyKinematics& kinematics = setup_.targetKinematics;
-  const Quat orientation = limb.turn * frame.rotations[limb.end];
-  LimbShape shape = shapeOf(limb, kneeAhead ? *kneeAhead : Vec3::UnitZ(), frame);
-  const Vec3 there = limb.goal - frame.positions[limb.upper];
+  const Quat orientation = goal.turn * frame.rotations[limb.end];
+  LimbShape shape = shapeOf(limb, frame);
+  const Vec3 there = goal.position - frame.positions[limb.upper];
   if (limb.hock) {
     const Quat turned = hockTurn(limb, shape, there) * frame.rotations[*limb.hock];
     target.locals[*limb.hock].rotation =
@@ -93,7 +93,7 @@ void LimbReach::reach(const Limb& limb, const Vec3* kneeAhead, BodyFrame& frame,
     shape.findBend(limb);
   }
   TwoBone bones{Vec3::Zero(), shape.middle, shape.end, there, {}, {}};
-  if (kneeAhead) bones.pole = kneePole(shape, there);
+  if (limb.kneeAhead) bones.pole = kneePole(shape, there);
   const TwoBoneTurns turns = solveTwoBone(bones);
   const Quat aboveUpper = kinematics.parentRotation(limb.upper, frame);
   const Quat aboveLower = turns.start * kinematics.parentRotation(limb.lower, frame);
@@ -102,10 +102,11 @@ void LimbReach::reach(const Limb& limb, const Vec3* kneeAhead, BodyFrame& frame,
   target.locals[limb.lower].rotation =
       (aboveLower.conjugate() * turns.middle * frame.rotations[limb.lower]).normalized();
   kinematics.globalsBelow(limb.upper, target, frame);
-  turnEnd(limb, orientation, frame, target);
+  turnEnd(limb.end, orientation, frame, target);
 }
 
-LimbShape LimbReach::shapeOf(const Limb& limb, const Vec3& kneeAhead, const BodyFrame& frame) const {
+LimbShape LimbReach::shapeOf(const LimbSpec& limb, const BodyFrame& frame) const {
+  const Vec3 kneeAhead = limb.kneeAhead.value_or(Vec3::UnitZ());
   const Vec3& start = frame.positions[limb.upper];
   LimbShape shape;
   shape.middle = frame.positions[limb.lower] - start;
@@ -124,7 +125,7 @@ LimbShape LimbReach::shapeOf(const Limb& limb, const Vec3& kneeAhead, const Body
   return shape;
 }
 
-TwoBonePositions LimbReach::positionsFor(const Limb& limb, LimbShape shape, const Vec3& there) {
+TwoBonePositions LimbReach::positionsFor(const LimbSpec& limb, LimbShape shape, const Vec3& there) {
   if (limb.hock) {
     const Quat turn = hockTurn(limb, shape, there);
     shape.end = shape.hock + turn * (shape.end - shape.hock);
@@ -136,11 +137,10 @@ TwoBonePositions LimbReach::positionsFor(const Limb& limb, LimbShape shape, cons
   return twoBonePositions(bones);
 }
 
-void LimbReach::turnEnd(const Limb& limb, const Quat& orientation, BodyFrame& frame, Pose& target) const {
+void LimbReach::turnEnd(Index end, const Quat& orientation, BodyFrame& frame, Pose& target) const {
   const BodyKinematics& kinematics = setup_.targetKinematics;
-  target.locals[limb.end].rotation =
-      (kinematics.parentRotation(limb.end, frame).conjugate() * orientation).normalized();
-  kinematics.globalsBelow(limb.end, target, frame);
+  target.locals[end].rotation = (kinematics.parentRotation(end, frame).conjugate() * orientation).normalized();
+  kinematics.globalsBelow(end, target, frame);
   root_.settleLoose(target, frame);
 }
 

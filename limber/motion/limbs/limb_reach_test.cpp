@@ -20,11 +20,12 @@ class LimbReachTest : public ::testing::Test {
     leg_ = goals_.legs().front();
   }
   void reach(const Vec3& displacement) {
-    leg_.goal = frame_.positions[leg_.end] + displacement;
-    reach_.reach(leg_, &leg_.kneeAhead, frame_, pose_);
+    leg_.goal.position = frame_.positions[leg_.spec.end] + displacement;
+    reach_.reach(leg_.spec, leg_.goal, frame_, pose_);
   }
   Vec3 knee() const {
-    return frame_.positions[leg_.lower] - 0.5 * (frame_.positions[leg_.upper] + frame_.positions[leg_.end]);
+    return frame_.positions[leg_.spec.lower] -
+           0.5 * (frame_.positions[leg_.spec.upper] + frame_.positions[leg_.spec.end]);
   }
 
   const Skeleton source_ = practiceHumanoid(), target_ = oddlyBuilt();
@@ -38,22 +39,22 @@ class LimbReachTest : public ::testing::Test {
 };
 
 TEST_F(LimbReachTest, ReachesAndKeepsTheFoot) {
-  const Quat foot = frame_.rotations[leg_.end];
+  const Quat foot = frame_.rotations[leg_.spec.end];
   reach(Vec3(0.05, 0.2, 0.1));
-  EXPECT_LT((frame_.positions[leg_.end] - leg_.goal).norm(), 1e-9);
-  EXPECT_LT(frame_.rotations[leg_.end].angularDistance(foot), 1e-9);
-  EXPECT_TRUE(LimbReach::isThere(leg_, frame_));
+  EXPECT_LT((frame_.positions[leg_.spec.end] - leg_.goal.position).norm(), 1e-9);
+  EXPECT_LT(frame_.rotations[leg_.spec.end].angularDistance(foot), 1e-9);
+  EXPECT_TRUE(LimbReach::isThere(leg_.spec, leg_.goal, frame_));
   BodyFrame anew;
   setup_.targetKinematics.globals(pose_, anew);
-  EXPECT_LT((anew.positions[leg_.end] - leg_.goal).norm(), 1e-9) << "the pose says what the frame says";
+  EXPECT_LT((anew.positions[leg_.spec.end] - leg_.goal.position).norm(), 1e-9) << "the pose says what the frame says";
 }
 
 TEST_F(LimbReachTest, TurnsTheFootWhereAsked) {
-  const Quat foot = frame_.rotations[leg_.end];
-  leg_.turn = Eigen::AngleAxisd(0.3, Vec3::UnitY());
-  EXPECT_FALSE(LimbReach::isThere(leg_, frame_));
+  const Quat foot = frame_.rotations[leg_.spec.end];
+  leg_.goal.turn = Eigen::AngleAxisd(0.3, Vec3::UnitY());
+  EXPECT_FALSE(LimbReach::isThere(leg_.spec, leg_.goal, frame_));
   reach(Vec3(0, 0.1, 0));
-  EXPECT_LT(frame_.rotations[leg_.end].angularDistance(leg_.turn * foot), 1e-9);
+  EXPECT_LT(frame_.rotations[leg_.spec.end].angularDistance(leg_.goal.turn * foot), 1e-9);
 }
 
 TEST(LimbReachOfAnimals, HocksBendAsWell) {
@@ -75,18 +76,19 @@ TEST(LimbReachOfAnimals, HocksBendAsWell) {
       BodyFrame frame;
       setup.targetKinematics.globals(pose, frame);
       Leg leg = goals.legs().front();
-      EXPECT_EQ(leg.hock, animal.find("b1LeftHock"));
-      if (!byHock) leg.hock.reset();
-      leg.goal = frame.positions[leg.end] + Vec3(0, up, 0);
-      const Vec3 thigh = frame.positions[leg.lower] - frame.positions[leg.upper];
-      const Quat foot = frame.rotations[leg.end];
-      reach.reach(leg, &leg.kneeAhead, frame, pose);
-      EXPECT_EQ((frame.positions[leg.end] - leg.goal).norm() < 1e-9, up > -0.1);
-      EXPECT_LT(frame.rotations[leg.end].angularDistance(foot), 1e-9);
+      EXPECT_EQ(leg.spec.hock, animal.find("b1LeftHock"));
+      if (!byHock) leg.spec.hock.reset();
+      leg.goal.position = frame.positions[leg.spec.end] + Vec3(0, up, 0);
+      const Vec3 thigh = frame.positions[leg.spec.lower] - frame.positions[leg.spec.upper];
+      const Quat foot = frame.rotations[leg.spec.end];
+      reach.reach(leg.spec, leg.goal, frame, pose);
+      EXPECT_EQ((frame.positions[leg.spec.end] - leg.goal.position).norm() < 1e-9, up > -0.1);
+      EXPECT_LT(frame.rotations[leg.spec.end].angularDistance(foot), 1e-9);
       const Index hock = animal.find("b1LeftHock").value();
-      const Vec3 above = frame.positions[leg.lower] - frame.positions[hock];
-      EXPECT_GT(above.cross(frame.positions[leg.end] - frame.positions[hock]).x(), 0) << "it never bends over";
-      return std::acos(thigh.normalized().dot((frame.positions[leg.lower] - frame.positions[leg.upper]).normalized()));
+      const Vec3 above = frame.positions[leg.spec.lower] - frame.positions[hock];
+      EXPECT_GT(above.cross(frame.positions[leg.spec.end] - frame.positions[hock]).x(), 0) << "it never bends over";
+      return std::acos(
+          thigh.normalized().dot((frame.positions[leg.spec.lower] - frame.positions[leg.spec.upper]).normalized()));
     };
     const double alone = thighTurns(false), shared = thighTurns(true);
     if (up > -0.1) {
@@ -103,7 +105,7 @@ TEST(LimbReachOfAnimals, LegsBendAsAtRestWhereTheSourcesBendElsewhere) {
   {
     const RetargetSetup alike(source, animal, matchSkeletons(source, animal), {});
     const RootPositioner root(alike);
-    EXPECT_FALSE(LimbGoals(alike, root).legs().front().ownBend);
+    EXPECT_FALSE(LimbGoals(alike, root).legs().front().spec.ownBend);
   }
   for (Joint& joint : source.joints) {
     if (joint.name.ends_with("Two") || joint.name.ends_with("Hock")) joint.rest.translation.z() *= -1;
@@ -117,20 +119,20 @@ TEST(LimbReachOfAnimals, LegsBendAsAtRestWhereTheSourcesBendElsewhere) {
   for (const double overstretched : {0.3, 0.6, 1.2}) {
     SCOPED_TRACE(overstretched);
     Leg leg = goals.legs().front();
-    EXPECT_TRUE(leg.ownBend);
+    EXPECT_TRUE(leg.spec.ownBend);
     Pose pose = restPose(animal);
-    pose.locals[leg.lower].rotation = Eigen::AngleAxisd(-overstretched, Vec3::UnitX());
+    pose.locals[leg.spec.lower].rotation = Eigen::AngleAxisd(-overstretched, Vec3::UnitX());
     BodyFrame frame;
     setup.targetKinematics.globals(pose, frame);
     const auto kneeAhead = [&] {
-      const Vec3 line = (frame.positions[leg.end] - frame.positions[leg.upper]).normalized();
-      const Vec3 knee = frame.positions[leg.lower] - frame.positions[leg.upper];
+      const Vec3 line = (frame.positions[leg.spec.end] - frame.positions[leg.spec.upper]).normalized();
+      const Vec3 knee = frame.positions[leg.spec.lower] - frame.positions[leg.spec.upper];
       return (knee - knee.dot(line) * line).z();
     };
     EXPECT_LT(kneeAhead(), 0);
-    leg.goal = frame.positions[leg.end] + Vec3(0, 0.1, 0);
-    reach.reach(leg, &leg.kneeAhead, frame, pose);
-    EXPECT_LT((frame.positions[leg.end] - leg.goal).norm(), 1e-9);
+    leg.goal.position = frame.positions[leg.spec.end] + Vec3(0, 0.1, 0);
+    reach.reach(leg.spec, leg.goal, frame, pose);
+    EXPECT_LT((frame.positions[leg.spec.end] - leg.goal.position).norm(), 1e-9);
     EXPECT_GT(kneeAhead(), 0.02);
   }
 }

@@ -19,8 +19,8 @@ MixBody::MixBody(const Skeleton& skeleton)
       setup_(ontoItself(plain_.skeleton())),
       root_(setup_),
       goals_(setup_, root_),
-      legs_(goals_.legs()) {
-  for (Leg& leg : legs_) leg.ownBend = leg.footDriven = false;
+      legs_(goals_.specs()) {
+  for (LegSpec& leg : legs_) leg.ownBend = false;
   const JointMatch* pelvis = setup_.map.find(body_part::kPelvis);
   pelvis_ = (pelvis ? *pelvis : setup_.map.matches.front()).target.front();
 }

@@ -23,7 +23,7 @@ class MixBody {
   const RootPositioner& root() const { return root_; }
   const TrunkTilt& trunk() const { return goals_.pelvis().trunk(); }
   // Each bends to where its joint angles bend it.
-  const std::vector<Leg>& legs() const { return legs_; }
+  const std::vector<LegSpec>& legs() const { return legs_; }
   // The joint whose turn about the vertical is the body's heading.
   Index pelvis() const { return pelvis_; }
 
@@ -35,7 +35,7 @@ class MixBody {
   RetargetSetup setup_;
   RootPositioner root_;
   LimbGoals goals_;
-  std::vector<Leg> legs_;
+  std::vector<LegSpec> legs_;
   Index pelvis_;
 };
 

@@ -82,8 +82,8 @@ bool isDuring(const std::vector<TimeSpan>& spans, double seconds) {
 class Mixer {
  public:
   Mixer(const MixBody& body, const MixMotion& a, const MixMotion& b, const StridePhases& phases)
-      : body_(body), a_(a), b_(b), phases_(phases), reach_(body.setup(), body.root()), legs_(body.legs()) {
-    for (const Leg& leg : body.legs()) {
+      : body_(body), a_(a), b_(b), phases_(phases), reach_(body.setup(), body.root()) {
+    for (const LegSpec& leg : body.legs()) {
       spansOfA_.push_back(a.planted(leg.end));
       spansOfB_.push_back(b.planted(leg.end));
       pairs_.push_back(paired(phasesOf(spansOfA_.back(), phases.a), phasesOf(spansOfB_.back(), phases.b)));
@@ -138,7 +138,7 @@ class Mixer {
     body_.globals(part.pose, frame_);
     part.ground = motion.groundAt(seconds, frame_);
     for (std::size_t i = 0; i < body_.legs().size(); ++i) {
-      const Leg& leg = body_.legs()[i];
+      const LegSpec& leg = body_.legs()[i];
       PartFrame::Foot& foot = part.feet.emplace_back();
       foot.knee = frame_.positions[leg.lower];
       foot.ankle = foot.toes = frame_.positions[leg.end];
@@ -161,16 +161,16 @@ class Mixer {
       const Vec3 inA = inFrame(ofA, a), inB = inFrame(ofB, b);
       return Vec3(ground.position() + ground.turn() * (inA + weight * (inB - inA)));
     };
-    for (std::size_t i = 0; i < legs_.size(); ++i) {
-      Leg& leg = legs_[i];
+    for (std::size_t i = 0; i < body_.legs().size(); ++i) {
+      const LegSpec& leg = body_.legs()[i];
       const PartFrame::Foot &ofA = a.feet[i], &ofB = b.feet[i];
       const Quat inA = a.ground.turn().conjugate() * ofA.turn, inB = b.ground.turn().conjugate() * ofB.turn;
       const Quat orientation = ground.turn() * inA.slerp(weight, inB);
-      leg.goal = blended(ofA.ankle, ofB.ankle);
+      LimbGoal goal{blended(ofA.ankle, ofB.ankle), {}};
       pointAt(leg.upper, leg.lower, blended(ofA.knee, ofB.knee), pose);
-      pointAt(leg.lower, leg.end, leg.goal, pose);
-      leg.turn = orientation * frame_.rotations[leg.end].conjugate();
-      if (!LimbReach::isThere(leg, frame_)) reach_.reach(leg, &leg.kneeAhead, frame_, pose);
+      pointAt(leg.lower, leg.end, goal.position, pose);
+      goal.turn = orientation * frame_.rotations[leg.end].conjugate();
+      if (!LimbReach::isThere(leg, goal, frame_)) reach_.reach(leg, goal, frame_, pose);
     }
   }
 
@@ -238,7 +238,6 @@ class Mixer {
   const MixMotion &a_, &b_;
   const StridePhases& phases_;
   LimbReach reach_;
-  std::vector<Leg> legs_;
   std::vector<std::vector<TimeSpan>> spansOfA_, spansOfB_;  // of each leg
   std::vector<std::vector<PairedSpan>> pairs_;              // likewise
   BodyFrame frame_;

@@ -62,7 +62,7 @@ class FootPlanter {
     for (std::size_t f = range_.begin; f < range_.end; ++f) {
       BodyFrame& frame = frames_[f - range_.begin];
       body_.globals(mixed_.frames.poses[f], frame);
-      for (const Leg& leg : body_.legs()) {
+      for (const LegSpec& leg : body_.legs()) {
         FreeFoot& free = feet_.emplace_back();
         free.ankle = frame.positions[leg.end];
         if (leg.toes) free.roll = frame.positions[*leg.toes] - free.ankle;
@@ -93,7 +93,7 @@ class FootPlanter {
 
   FootFrame askedOf(std::size_t f, std::size_t i, const BodyFrame& frame) {
     const double unit = 1 / body_.setup().targetHipHeight;
-    const Leg& leg = body_.legs()[i];
+    const LegSpec& leg = body_.legs()[i];
     const FreeFoot& now = foot(f, i);
     double ground = leg.ankleGround;
     if (leg.toes) ground = std::max(ground, leg.toesGround - now.roll.y());
@@ -101,7 +101,7 @@ class FootPlanter {
     asked.lowest = unit * std::min(ground - now.ankle.y(), 0.0);
     asked.displacement = unit * (now.ankle - frame.positions[leg.upper]);
     asked.most = std::max(unit * planting::kStretched * leg.length, asked.displacement.norm());
-    if (body_.trunk().isFore(leg.upper)) asked.lift = TrunkTilt::liftOf(body_.trunk().trunkOf(frame));
+    if (leg.fore) asked.lift = TrunkTilt::liftOf(body_.trunk().trunkOf(frame));
     if (!staysPlanted(f, i)) return asked;
     const MixedFoot& own = mixedFoot(f, i);
     asked.hold = 1;

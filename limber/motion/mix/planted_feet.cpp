@@ -36,7 +36,7 @@ std::vector<FootSpans> plantedFeet(const RetargetSetup& setup, const PoseSequenc
   const std::vector<WatchedFoot> watched = goals.watchedFeet();
   const ContactTrack track(setup, watched, source);
   std::vector<FootSpans> feet;
-  for (std::size_t i = 0; i < watched.size(); ++i) feet.push_back({goals.legs()[i].end, track.spans(i)});
+  for (std::size_t i = 0; i < watched.size(); ++i) feet.push_back({goals.legs()[i].spec.end, track.spans(i)});
   return feet;
 }
 

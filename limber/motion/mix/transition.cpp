@@ -35,7 +35,7 @@ class SeenFrames {
       : from_(from), step_(frameSeconds) {
     const auto frames = static_cast<std::size_t>(std::floor((to - from) / frameSeconds + kSameTime)) + 1;
     std::vector<std::vector<TimeSpan>> spans;
-    for (const Leg& leg : body.legs()) spans.push_back(motion.planted(leg.end));
+    for (const LegSpec& leg : body.legs()) spans.push_back(motion.planted(leg.end));
     for (std::size_t f = 0; f < frames; ++f) {
       const double now = from + static_cast<double>(f) * frameSeconds;
       const bool isLast = now + frameSeconds > motion.duration() + kSameTime;

@@ -25,8 +25,8 @@ class LimbIkRetargeter : public FrameRetargeter {
         clearance_(setup, aligned_.root()) {
     findIkMethod(setup.options.solver);
     if (setup.options.solver == "two-bone") return;
-    for (const Leg& leg : goals_.legs()) legSolvers_.push_back(solverOf(leg));
-    for (const Limb& arm : hands_.arms()) armSolvers_.push_back(solverOf(arm));
+    for (const Leg& leg : goals_.legs()) legSolvers_.push_back(solverOf(leg.spec));
+    for (const Arm& arm : hands_.arms()) armSolvers_.push_back(solverOf(arm.spec));
   }
 
   void next(const Pose& source, double seconds, Pose& target) override {
@@ -40,15 +40,15 @@ class LimbIkRetargeter : public FrameRetargeter {
       goals_.pelvis().apply(goals_.pelvisMove(to()), target, to());
       for (std::size_t i = 0; i < legs.size(); ++i) {
         goals_.bendAsSource(legs[i], to());
-        reach(legs[i], solver(legSolvers_, i), &legs[i].kneeAhead, target);
+        reach(legs[i].spec, legs[i].goal, solver(legSolvers_, i), target);
         goals_.levelToes(legs[i], to(), target);
       }
       goals_.tail().apply(target, to());
     }
     hands_.set(from(), to(), seconds);
-    std::vector<Limb>& arms = hands_.arms();
+    std::vector<Arm>& arms = hands_.arms();
     for (std::size_t i = 0; i < arms.size(); ++i) {
-      if (arms[i].wanted) reach(arms[i], solver(armSolvers_, i), nullptr, target);
+      reach(arms[i].spec, arms[i].goal, solver(armSolvers_, i), target);
     }
     if (setup_.options.contacts) keepArmsOut(goals_.atCut() ? 0 : seconds, target);
   }
@@ -70,7 +70,7 @@ class LimbIkRetargeter : public FrameRetargeter {
     }
   }
 
-  std::unique_ptr<IkSolver> solverOf(const Limb& limb) const {
+  std::unique_ptr<IkSolver> solverOf(const LimbSpec& limb) const {
     // A limb whose end only rides on it is no chain: two bones serve it.
     if (aligned_.root().carrierOf(limb.end) != limb.end) return nullptr;
     IkTarget goal;
@@ -85,20 +85,20 @@ class LimbIkRetargeter : public FrameRetargeter {
     return solvers.empty() ? nullptr : solvers[i].get();
   }
 
-  void reach(const Limb& limb, IkSolver* solver, const Vec3* kneeAhead, Pose& target) {
-    if (LimbReach::isThere(limb, to())) return;
-    if (!solver) return reach_.reach(limb, kneeAhead, to(), target);
-    const Quat orientation = limb.turn * to().rotations[limb.end];
-    reachBySolver(limb, *solver, target);
+  void reach(const LimbSpec& limb, const LimbGoal& goal, IkSolver* solver, Pose& target) {
+    if (LimbReach::isThere(limb, goal, to())) return;
+    if (!solver) return reach_.reach(limb, goal, to(), target);
+    const Quat orientation = goal.turn * to().rotations[limb.end];
+    reachBySolver(limb, goal, *solver, target);
     setup_.targetKinematics.globals(target, to());
-    reach_.turnEnd(limb, orientation, to(), target);
+    reach_.turnEnd(limb.end, orientation, to(), target);
   }
 
-  void reachBySolver(const Limb& limb, IkSolver& solver, Pose& target) {
+  void reachBySolver(const LimbSpec& limb, const LimbGoal& goal, IkSolver& solver, Pose& target) {
     IkTarget wanted;
     wanted.joint = limb.end;
     wanted.base = limb.upper;
-    wanted.position = setup_.targetNeutral.toBody.conjugate() * limb.goal;
+    wanted.position = setup_.targetNeutral.toBody.conjugate() * goal.position;
     solver.solve(target, std::span<const IkTarget>(&wanted, 1));
   }
 

@@ -33,7 +33,7 @@ class MotionSmoother {
       : setup_(setup),
         root_(setup),
         goals_(setup, root_),
-        legs_(goals_.legs()),
+        legs_(goals_.specs()),
         trunk_(goals_.pelvis().trunk()),
         moved_(setup, root_, trunk_, legs_),
         source_(source),
@@ -80,7 +80,7 @@ class MotionSmoother {
     }
   }
 
-  FootFrame boundsOf(const Leg& leg) const {
+  FootFrame boundsOf(const LegSpec& leg) const {
     const double unit = 1 / setup_.targetHipHeight;
     const Vec3& end = frame_.positions[leg.end];
     const std::optional<Index> toes = leg.toes ? leg.toes : leg.tip;
@@ -90,7 +90,7 @@ class MotionSmoother {
     foot.lowest = unit * std::min(ground - end.y(), 0.0);
     foot.displacement = unit * (end - frame_.positions[leg.upper]);
     foot.most = std::max(unit * kMaxStretch * leg.length, foot.displacement.norm());
-    if (trunk_.isFore(leg.upper)) foot.lift = TrunkTilt::liftOf(trunk_.trunkOf(frame_));
+    if (leg.fore) foot.lift = TrunkTilt::liftOf(trunk_.trunkOf(frame_));
     return foot;
   }
 
@@ -204,7 +204,7 @@ class MotionSmoother {
   const RetargetSetup& setup_;
   RootPositioner root_;
   LimbGoals goals_;
-  const std::vector<Leg>& legs_;
+  const std::vector<LegSpec> legs_;
   const TrunkTilt& trunk_;
   MovedLegs moved_;
   const PoseSequence& source_;

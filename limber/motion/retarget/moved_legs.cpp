@@ -11,10 +11,10 @@ constexpr double kMissed = 1e-3;  // hip heights; 1e-4 to 5e-3; by which a leg m
 }  // namespace
 
 MovedLegs::MovedLegs(const RetargetSetup& setup, const RootPositioner& root, const TrunkTilt& trunk,
-                     std::vector<Leg> legs)
+                     std::vector<LegSpec> legs)
     : setup_(setup), root_(root), trunk_(trunk), reach_(setup, root), legs_(std::move(legs)) {
   const std::vector<Vec3>& rest = setup.targetNeutral.restPositions;
-  for (const Leg& leg : legs_) {
+  for (const LegSpec& leg : legs_) {
     lengths_.push_back({(rest[leg.lower] - rest[leg.upper]).norm(), (rest[leg.end] - rest[leg.lower]).norm()});
   }
   findWeights();
@@ -33,12 +33,13 @@ void MovedLegs::findWeights() {
   };
   pelvisWeight_ = weight(pelvisOf(setup_.map, MapSide::kTarget, before.positions),
                          pelvisOf(setup_.map, MapSide::kTarget, after.positions));
-  for (const Leg& leg : legs_) hipWeights_.push_back(weight(before.positions[leg.upper], after.positions[leg.upper]));
+  for (const LegSpec& leg : legs_)
+    hipWeights_.push_back(weight(before.positions[leg.upper], after.positions[leg.upper]));
 }
 
 ChangeLayout MovedLegs::layoutOf(std::size_t frames) const {
   std::vector<bool> tilted;
-  for (const Leg& leg : legs_) tilted.push_back(trunk_.isFore(leg.upper));
+  for (const LegSpec& leg : legs_) tilted.push_back(leg.fore);
   return ChangeLayout(frames, std::move(tilted));
 }
 
@@ -49,8 +50,8 @@ void MovedLegs::add(const BodyFrame& frame) {
     seen.middle = root_.middleOfHips(frame);
     seen.trunk = trunk_.trunkOf(frame);
   }
-  for (const Leg& leg : legs_) {
-    seen.legs.push_back({reach_.shapeOf(leg, leg.kneeAhead, frame), frame.positions[leg.upper]});
+  for (const LegSpec& leg : legs_) {
+    seen.legs.push_back({reach_.shapeOf(leg, frame), frame.positions[leg.upper]});
   }
 }
 
@@ -136,15 +137,16 @@ void MovedLegs::pose(const ChangeLayout& layout, const Changes& changes, std::si
                      std::span<const double> twists) {
   const double unit = setup_.targetHipHeight;
   setup_.targetKinematics.globals(target, posed_);
+  std::vector<LimbGoal> goals(legs_.size());
   for (std::size_t i = 0; i < legs_.size(); ++i) {
-    legs_[i].goal = posed_.positions[legs_[i].end] + unit * displacementAt(changes, layout.foot(frame, i));
-    legs_[i].turn = Eigen::AngleAxisd(twists.empty() ? 0 : twists[i], Vec3::UnitY());
+    goals[i].position = posed_.positions[legs_[i].end] + unit * displacementAt(changes, layout.foot(frame, i));
+    goals[i].turn = Eigen::AngleAxisd(twists.empty() ? 0 : twists[i], Vec3::UnitY());
   }
   const Move move = moveAt(layout, changes, frame);
   root_.movePelvis(move.shift, target, posed_);
   if (layout.tilts()) root_.turnPelvis(move.tilt, target, posed_);
-  for (const Leg& leg : legs_) {
-    if (solvesAll_ || !LimbReach::isThere(leg, posed_)) reach_.reach(leg, &leg.kneeAhead, posed_, target);
+  for (std::size_t i = 0; i < legs_.size(); ++i) {
+    if (solvesAll_ || !LimbReach::isThere(legs_[i], goals[i], posed_)) reach_.reach(legs_[i], goals[i], posed_, target);
   }
 }
 

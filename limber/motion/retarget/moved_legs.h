@@ -14,7 +14,7 @@ namespace limber {
 class MovedLegs {
  public:
   // All but the legs must outlive this.
-  MovedLegs(const RetargetSetup& setup, const RootPositioner& root, const TrunkTilt& trunk, std::vector<Leg> legs);
+  MovedLegs(const RetargetSetup& setup, const RootPositioner& root, const TrunkTilt& trunk, std::vector<LegSpec> legs);
 
   // Of so many frames.
   ChangeLayout layoutOf(std::size_t frames) const;
@@ -64,7 +64,7 @@ class MovedLegs {
   const RootPositioner& root_;
   const TrunkTilt& trunk_;
   LimbReach reach_;
-  std::vector<Leg> legs_;
+  std::vector<LegSpec> legs_;
   // The fractions of the pelvis' displacement that its point and each leg's hip take.
   double pelvisWeight_ = 0;
   std::vector<double> hipWeights_;

@@ -60,7 +60,7 @@ struct Moved {
         motion(swinging(target)),
         setup(source, target, matched(source, target, matching), {}) {
     std::vector<bool> tilted;
-    for (const Leg& leg : goals.legs()) tilted.push_back(goals.pelvis().trunk().isFore(leg.upper));
+    for (const LegSpec& leg : goals.specs()) tilted.push_back(leg.fore);
     layout = ChangeLayout(kFrames, tilted);
     feet.resize(kFrames * goals.legs().size());
     for (const Pose& pose : motion.poses) {
@@ -92,7 +92,7 @@ struct Moved {
       paths[0].push_back(pelvisOf(setup.map, MapSide::kTarget, frame.positions) / setup.targetHipHeight);
       const std::vector<Vec3>& rest = setup.targetNeutral.restPositions;
       for (std::size_t i = 0; i < goals.legs().size(); ++i) {
-        const Leg& leg = goals.legs()[i];
+        const LegSpec& leg = goals.legs()[i].spec;
         const auto displacement = [&](const std::vector<Vec3>& at, Index from, Index to) {
           return Vec3(at[to] - at[from]);
         };
@@ -110,7 +110,7 @@ struct Moved {
   RetargetSetup setup;
   RootPositioner root{setup};
   LimbGoals goals{setup, root};
-  MovedLegs legs{setup, root, goals.pelvis().trunk(), goals.legs()};
+  MovedLegs legs{setup, root, goals.pelvis().trunk(), goals.specs()};
   ChangeLayout layout;
   std::vector<FootFrame> feet;
   BodyFrame frame;
@@ -137,7 +137,7 @@ Skeleton withHigherHocks() {
 TEST(MovedLegs, TheseBodiesDiffer) {
   const auto hockCarriesMiddle = [](Skeleton (*made)(), Matching matching) {
     Moved moved(made(), made(), matching);
-    const Leg& leg = moved.goals.legs().front();
+    const LegSpec leg = moved.goals.legs().front().spec;
     return leg.hock && isAncestorOrSelf(moved.target, *leg.hock, leg.lower);
   };
   EXPECT_FALSE(hockCarriesMiddle(&quadrupedWithHocks, Matching::kNames));

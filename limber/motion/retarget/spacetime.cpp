@@ -117,12 +117,12 @@ class Spacetime {
       for (std::size_t i = 0; i < feet_.size(); ++i) {
         const Leg& leg = legs[i];
         FreeFoot& foot = feet_[i].emplace_back();
-        foot.ankle = to.positions[leg.end];
-        foot.ankleFloor = leg.ankleFloor;
+        foot.ankle = to.positions[leg.spec.end];
+        foot.ankleFloor = leg.state.ankleFloor;
         foot.toesFloor = -std::numeric_limits<double>::infinity();
-        if (!leg.toes) continue;
-        foot.roll = to.positions[*leg.toes] - to.positions[leg.end];
-        foot.toesFloor = leg.toesFloor;
+        if (!leg.spec.toes) continue;
+        foot.roll = to.positions[*leg.spec.toes] - to.positions[leg.spec.end];
+        foot.toesFloor = leg.state.toesFloor;
       }
     }
   }
@@ -130,13 +130,13 @@ class Spacetime {
   // Foot-driven legs begin where their feet are driven, with the pelvis over them, not by joint angles.
   void driveByFeet(std::size_t f, BodyFrame& to) {
     std::vector<Leg>& legs = goals_.legs();
-    if (!anyFootDriven(legs)) return;
+    if (!goals_.feetAreDriven()) return;
     goals_.pelvis().apply(goals_.pelvis().moveFor(legs, to), target_.poses[f], to);
     for (Leg& leg : legs) {
-      if (!leg.footDriven) continue;
+      if (!leg.spec.drive) continue;
       goals_.bendAsSource(leg, to);
-      leg.turn = Quat::Identity();
-      reach_.reach(leg, &leg.kneeAhead, to, target_.poses[f]);
+      leg.goal.turn = Quat::Identity();
+      reach_.reach(leg.spec, leg.goal, to, target_.poses[f]);
     }
   }
 
@@ -164,7 +164,7 @@ class Spacetime {
   // The constraints of the foot: on steps, not on positions. The least squares find where it is planted best.
   FootFrame askedOf(std::size_t i, std::size_t f, const BodyFrame& to) {
     const double unit = 1 / setup_.targetHipHeight;
-    const Leg& leg = goals_.legs()[i];
+    const LegSpec& leg = goals_.legs()[i].spec;
     const FreeFoot& now = feet_[i][f];
     const FootAnchor anchor = contacts_->at(f, i).anchor;
     const Vec3 roll = rollOf(i, f);
@@ -172,12 +172,12 @@ class Spacetime {
     const double toesUp = now.toesFloor - roll.y() - now.ankle.y(), ankleUp = now.ankleFloor - now.ankle.y();
     FootFrame asked;
     asked.lowest = unit * std::max(ankleUp, toesUp);
-    asked.height = std::max(leg.footDriven ? 0 : unit * (byToes ? toesUp : ankleUp), asked.lowest);
-    asked.rest = leg.footDriven ? kFootDrivenRest : contacts_->firmness(f, i);
+    asked.height = std::max(leg.drive ? 0 : unit * (byToes ? toesUp : ankleUp), asked.lowest);
+    asked.rest = leg.drive ? kFootDrivenRest : contacts_->firmness(f, i);
     asked.displacement = unit * (now.ankle - to.positions[leg.upper]);
     asked.most = unit * planting::kStretched * leg.length;
     if (anchor == FootAnchor::kNone) asked.most = std::max(asked.most, asked.displacement.norm());
-    if (trunk().isFore(leg.upper)) asked.lift = TrunkTilt::liftOf(trunk().trunkOf(to));
+    if (leg.fore) asked.lift = TrunkTilt::liftOf(trunk().trunkOf(to));
     if (f == 0 || anchor == FootAnchor::kNone || contacts_->at(f - 1, i).anchor == FootAnchor::kNone) return asked;
     asked.hold = contacts_->firmness(f, i);
     asked.step = unit * (feet_[i][f - 1].ankle - now.ankle);
@@ -189,12 +189,12 @@ class Spacetime {
 
   void plantLegs() {
     if (feet_.empty()) return;
-    MovedLegs legs(setup_, root_, trunk(), goals_.legs());
+    MovedLegs legs(setup_, root_, trunk(), goals_.specs());
     legs.solveAll(true);
     FootPlanting planting;
     planting.end = frames();
     planting.frameSeconds = target_.frameSeconds;
-    if (anyFootDriven(goals_.legs())) planting.changeSeconds = kFootDrivenSeconds;
+    if (goals_.feetAreDriven()) planting.changeSeconds = kFootDrivenSeconds;
     planting.cuts = cuts_;
     planting.frameAt = [&](std::size_t f) -> const BodyFrame& { return targetAt(f); };
     planting.askedOf = [&](std::size_t f, std::size_t leg, const BodyFrame& to) { return askedOf(leg, f, to); };
@@ -208,7 +208,7 @@ class Spacetime {
       BodyFrame& to = targetAt(f);
       for (std::size_t i = 0; i < feet_.size(); ++i) {
         Leg& leg = goals_.legs()[i];
-        leg.contact = contacts_->at(f, i);
+        leg.state.contact = contacts_->at(f, i);
         goals_.levelToes(leg, to, target_.poses[f]);
       }
       goals_.tail().apply(target_.poses[f], to);
@@ -216,24 +216,23 @@ class Spacetime {
   }
 
   void placeHands() {
-    std::vector<Limb>& arms = hands_.arms();
+    std::vector<Arm>& arms = hands_.arms();
     std::vector<Goals3> displacements(arms.size(), {noGoals(), noGoals(), noGoals()});
     for (std::size_t f = 0; f < frames(); ++f) {
       const BodyFrame& to = targetAt(f);
       hands_.set(sourceAt(f), to, 0);  // at once: the curve smooths
       for (std::size_t a = 0; a < arms.size(); ++a) {
-        follow(arms[a].wanted ? Vec3(arms[a].goal - to.positions[arms[a].end]) : Vec3(Vec3::Zero()), f,
-               displacements[a]);
+        follow(arms[a].goal.position - to.positions[arms[a].spec.end], f, displacements[a]);
       }
     }
     for (std::size_t a = 0; a < arms.size(); ++a) {
       const Curve3 smooth(displacements[a], target_.frameSeconds, following(kHandSeconds));
       for (std::size_t f = 0; f < frames(); ++f) {
         BodyFrame& to = targetAt(f);
-        arms[a].goal = to.positions[arms[a].end] + smooth.at(f);
-        if (LimbReach::isThere(arms[a], to)) continue;
+        arms[a].goal.position = to.positions[arms[a].spec.end] + smooth.at(f);
+        if (LimbReach::isThere(arms[a].spec, arms[a].goal, to)) continue;
         hands_.softenReach(arms[a], to);
-        reach_.reach(arms[a], nullptr, to, target_.poses[f]);
+        reach_.reach(arms[a].spec, arms[a].goal, to, target_.poses[f]);
       }
     }
     if (setup_.options.contacts) keepArmsOut();

@@ -39,7 +39,7 @@ ArmClearance::ArmClearance(const RetargetSetup& setup, const RootPositioner& roo
   BodyFrame rest;
   setup.targetKinematics.globals(setup.targetRest, rest);
   for (const Side side : kSides) {
-    const std::optional<Limb> limb = findLimb(setup, root, PartKind::kArm, side);
+    const std::optional<LimbSpec> limb = findLimb(setup, root, PartKind::kArm, side);
     if (!limb || body_.empty()) continue;
     Arm& arm = arms_.emplace_back();
     arm.limb = *limb;
@@ -50,7 +50,7 @@ ArmClearance::ArmClearance(const RetargetSetup& setup, const RootPositioner& roo
   }
 }
 
-Vec3 ArmClearance::positionOf(const Limb& limb, double along, const BodyFrame& frame) {
+Vec3 ArmClearance::positionOf(const LimbSpec& limb, double along, const BodyFrame& frame) {
   const Vec3& elbow = frame.positions[limb.lower];
   return elbow + along * (frame.positions[limb.end] - elbow);
 }
@@ -82,16 +82,14 @@ Vec3 ArmClearance::displacementOut(std::size_t arm, Bone bone, const BodyFrame& 
 }
 
 void ArmClearance::swing(std::size_t arm, Bone bone, const Vec3& displacement, BodyFrame& frame, Pose& target) const {
-  const Limb& limb = arms_[arm].limb;
+  const LimbSpec& limb = arms_[arm].limb;
   const auto [upper, lower] =
       bone == Bone::kUpper ? std::pair(limb.upper, limb.lower) : std::pair(limb.lower, limb.end);
   const Vec3 from = frame.positions[lower] - frame.positions[upper];
   if (displacement.norm() < 1e-9 * from.norm()) return;
   Eigen::AngleAxisd turn(shortestRotation(from, from + displacement));
   turn.angle() = kMaxSwing * std::tanh(turn.angle() / kMaxSwing);
-  Limb turned;
-  turned.end = upper;
-  reach_.turnEnd(turned, Quat(turn) * frame.rotations[upper], frame, target);
+  reach_.turnEnd(upper, Quat(turn) * frame.rotations[upper], frame, target);
 }
 
 }  // namespace limber

@@ -31,7 +31,7 @@ class ArmClearance {
   // Forearm lengths from the elbow; 0 to 1.5 (a hand's middle is at 1.3); where depths are probed; set by hand.
   static constexpr std::array<double, 5> kAlong = {0, 0.45, 0.75, 1.0, 1.3};
   struct Arm {
-    Limb limb;
+    LimbSpec limb;
     std::array<double, kAlong.size()> thick = {};   // metres that have to stay outside
     std::array<double, kAlong.size()> atRest = {};  // metres below the surface
   };
@@ -39,7 +39,7 @@ class ArmClearance {
   SkinTube::Depth depthAt(const Vec3& point, const BodyFrame& frame) const;
   // The displacement that takes the arm there out again; zero where it is out.
   Vec3 displacementOutAt(const Arm& arm, std::size_t probe, const BodyFrame& frame) const;
-  static Vec3 positionOf(const Limb& limb, double along, const BodyFrame& frame);
+  static Vec3 positionOf(const LimbSpec& limb, double along, const BodyFrame& frame);
 
   const RetargetSetup& setup_;
   LimbReach reach_;

@@ -29,6 +29,11 @@ BodyLift::BodyLift(const RetargetSetup& setup) : setup_(setup) {
   }
 }
 
+void BodyLift::apply(const BodyFrame& source, const RootPositioner& root, Pose& target, BodyFrame& frame) const {
+  if (setup_.animalLegs.empty()) return;
+  root.movePelvis(Vec3(0, (*this)(source, frame), 0), target, frame);
+}
+
 double BodyLift::operator()(const BodyFrame& source, const BodyFrame& target) const {
   const double height = setup_.targetHipHeight;
   double sum = 0, weights = 0;

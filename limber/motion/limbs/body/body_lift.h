@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "limber/character/matching/retarget_setup.h"
+#include "limber/motion/limbs/body/root_motion.h"
 
 namespace limber {
 
@@ -15,6 +15,8 @@ class BodyLift {
   // Nothing to lift for people. `setup` must outlive this.
   explicit BodyLift(const RetargetSetup& setup);
 
+  // `frame` are the globals of `target`; both are brought up to date.
+  void apply(const BodyFrame& source, const RootPositioner& root, Pose& target, BodyFrame& frame) const;
   // Metres, at least 0, without a jump from frame to frame.
   double operator()(const BodyFrame& source, const BodyFrame& target) const;
 

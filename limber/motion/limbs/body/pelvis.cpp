@@ -14,32 +14,17 @@ namespace {
 constexpr double kWidthPower = 1.5;
 
 // In hip heights of the target.
-constexpr double kMaxShift = 0.3;  // 0.15 to 0.5; vertical offset of the pelvis; set by hand
-// 0.05 to 0.3; by which feet that cannot reach pull down hips or shoulders, before they lift; set on a fox's gallop on
-// an alpaca, which reared without it.
-constexpr double kMaxAtEnd = 0.15;
-// Soft limits of sinking: 0.005 to 0.03, before legs are stretched; 0.002 to 0.01, displacement of a foot that counts
-// half (0.01 gave a jerk of 1.14 times the source's). By jerk on the shared people.
-constexpr double kSoftStretch = 0.015, kSoftChange = 0.004;
-// 0.02 to 0.08; kSoftStretch of legs at both ends of a body and of foot-driven ones, some of which are far off and
-// stretch more; set on a dinosaur's clips on people.
-constexpr double kSoftFar = 0.04;
+constexpr double kSoftChange = 0.004;  // 0.002 to 0.01; displacement of a foot that counts half; by jerk on people
 // 0.05 to 0.2; by which foot-driven legs count e times as much if they want the body lower; set by hand on farm
 // animals.
 constexpr double kSoftBend = 0.1;
-constexpr double kStanceBelow = 0.45;  // Leg::lift; 0.3 (before) to kLifted; their bend no longer counts; set by hand
+constexpr double kStanceBelow = 0.45;  // LimbState::lift; 0.3 to kLifted; their bend no longer counts; set by hand
 constexpr double kSoftFold = 0.02;     // 0.01 to 0.05; before a leg folds wholly; set by hand
 
-// Squared sine of a leg's slope; 0.1 to 0.5; of a person's leg, below which sinking helps it less; set on a dinosaur's
-// clips on people.
-constexpr double kNearLevel = 0.3;
 constexpr double kStay = 0.5;  // legs; 0.1 to 1; that want the body to stay, against foot-driven ones; set by hand
 // Fraction; 0.5 to 1; of what the bends of legs at both ends want these to move apart; at 1 a fox that gallops as an
 // alpaca reared.
 constexpr double kApart = 0.75;
-// Fraction of Limb::folded; 0.5 to 1; the nearest that people's feet come to their hips; set by hand on boxing and
-// bending.
-constexpr double kKneesFold = 0.75;
 // Fraction of the distance to which a leg folds; 0.2 to 1; how far below its hip the pose has a foot that wholly keeps
 // the body above it (less up to the hip's level); on handstands, kicks and raised legs: bones off by 14 degrees, not
 // 180.
@@ -59,8 +44,8 @@ double saturated(double x, double most) {
 }
 
 // Fraction to which the body makes up for what the leg lacks to reach its goal.
-double followed(const Leg& leg) {
-  return leg.footDriven ? leg.upright * smoothStep(1 - leg.lift / kLifted) : 1;
+double followed(const LimbState& leg) {
+  return leg.upright * smoothStep(1 - leg.lift / kLifted);
 }
 
 double hipWidth(const NeutralPose& neutral, Index left, Index right) {
@@ -100,7 +85,7 @@ void Pelvis::levelHips(Pose& target, BodyFrame& frame) const {
 
 Pelvis::Move Pelvis::moveFor(std::span<const Leg> legs, const BodyFrame& frame, std::optional<double> rise) const {
   if (tilt_.tilts()) {
-    const auto fore = std::find_if(legs.begin(), legs.end(), [](const Leg& leg) { return leg.fore; });
+    const auto fore = std::find_if(legs.begin(), legs.end(), [](const Leg& leg) { return leg.spec.fore; });
     const auto hind = static_cast<std::size_t>(fore - legs.begin());
     return moveOfEnds(legs.first(hind), legs.subspan(hind), frame);
   }
@@ -116,7 +101,7 @@ Pelvis::Move Pelvis::moveOfEnds(std::span<const Leg> hind, std::span<const Leg> 
   return {TrunkTilt::turnFor(shiftFor(fore, frame, none, foreRise - apart) - up, tilt_.trunkOf(frame)), up};
 }
 
-Vec3 Pelvis::hipDisplacement(const Move& move, const Leg& leg, const BodyFrame& frame) const {
+Vec3 Pelvis::hipDisplacement(const Move& move, const LegSpec& leg, const BodyFrame& frame) const {
   const Vec3 displacement = Vec3(0, move.up, 0);
   if (move.turn.w() == 1) return displacement;
   const Vec3 fromMiddle = frame.positions[leg.upper] - root_.middleOfHips(frame);
@@ -135,14 +120,17 @@ void Pelvis::apply(const Move& move, Pose& target, BodyFrame& frame) const {
 // Least squares over what the planted legs lack, against the turn itself. On one leg only the turn about the vertical
 // helps: the shift brings that leg to the ground.
 Quat Pelvis::turnFor(std::span<const Leg> legs, const BodyFrame& frame) const {
-  if (!setup_.person || legs.size() != 2 || !root_.turnsPelvis() || anyFootDriven(legs)) return Quat::Identity();
+  if (legs.size() != 2 || !root_.turnsPelvis() || legs[0].spec.drive || legs[1].spec.drive) return Quat::Identity();
   const Leg &left = legs[0], &right = legs[1];
-  const Vec3 toHip = 0.5 * (frame.positions[left.upper] - frame.positions[right.upper]);
-  const Vec3 lackLeft = left.goal - frame.positions[left.end], lackRight = right.goal - frame.positions[right.end];
-  const double both = left.contact.strength * right.contact.strength, length = 0.5 * (left.length + right.length);
+  const Vec3 toHip = 0.5 * (frame.positions[left.spec.upper] - frame.positions[right.spec.upper]);
+  const Vec3 lackLeft = left.goal.position - frame.positions[left.spec.end],
+             lackRight = right.goal.position - frame.positions[right.spec.end];
+  const double both = left.state.contact.strength * right.state.contact.strength,
+               length = 0.5 * (left.spec.length + right.spec.length);
   const double onTwo = kStiffOnTwo * length, onOne = kStiffOnOne * length;
   Vec3 turn = 0.5 * both / (toHip.squaredNorm() + onTwo * onTwo) * toHip.cross(lackLeft - lackRight);
-  const Vec3 alone = (left.contact.strength - both) * lackLeft - (right.contact.strength - both) * lackRight;
+  const Vec3 alone =
+      (left.state.contact.strength - both) * lackLeft - (right.state.contact.strength - both) * lackRight;
   turn.y() += toHip.cross(alone).y() / (toHip.squaredNorm() + onOne * onOne);
   return fromRotationVector(turn / std::sqrt(1 + turn.squaredNorm() / (kMaxTurn * kMaxTurn)));
 }
@@ -152,16 +140,17 @@ Quat Pelvis::turnFor(std::span<const Leg> legs, const BodyFrame& frame) const {
 double Pelvis::riseFor(std::span<const Leg> legs, const BodyFrame& frame, const Quat& turn) const {
   double sum = 0, weights = 0;
   for (const Leg& leg : legs) {
-    if (leg.footDriven) continue;
-    const Vec3 hip = frame.positions[leg.upper], displacement = leg.goal - hip - hipDisplacement({turn, 0}, leg, frame);
-    const double length = (frame.positions[leg.end] - hip).norm(),
+    if (leg.spec.drive) continue;
+    const Vec3 hip = frame.positions[leg.spec.upper],
+               displacement = leg.goal.position - hip - hipDisplacement({turn, 0}, leg.spec, frame);
+    const double length = (frame.positions[leg.spec.end] - hip).norm(),
                  across = std::hypot(displacement.x(), displacement.z());
     if (displacement.y() >= 0 || across >= length) continue;
-    const double weight = leg.contact.strength * (1 - across * across / (length * length));
+    const double weight = leg.state.contact.strength * (1 - across * across / (length * length));
     sum += weight * (displacement.y() + std::sqrt(length * length - across * across));
     weights += weight;
   }
-  const double most = kMaxShift * setup_.targetHipHeight;
+  const double most = kMaxSink * setup_.targetHipHeight;
   return std::clamp(sum / std::max(weights, 1.0) + footDrivenOffset(legs, frame), -most, most);
 }
 
@@ -171,52 +160,52 @@ double Pelvis::footDrivenOffset(std::span<const Leg> legs, const BodyFrame& fram
   const double soft = kSoftBend * setup_.targetHipHeight;
   double sum = kStay, weights = kStay;
   for (const Leg& leg : legs) {
-    if (!leg.footDriven) continue;
-    const Vec3 displacement = leg.goal - frame.positions[leg.upper];
-    const double reach = leg.bentReach, across = std::hypot(displacement.x(), displacement.z());
+    if (!leg.spec.drive) continue;
+    const Vec3 displacement = leg.goal.position - frame.positions[leg.spec.upper];
+    const double reach = leg.state.bentReach, across = std::hypot(displacement.x(), displacement.z());
     if (across >= reach) continue;
-    const double weight = leg.upright * smoothStep(1 - leg.lift / kStanceBelow) *
-                          (1 - across * across / (reach * reach)) * steepness(leg, across, reach);
+    const double weight = leg.state.upright * smoothStep(1 - leg.state.lift / kStanceBelow) *
+                          (1 - across * across / (reach * reach)) * steepness(leg.spec.support, across, reach);
     const double up = displacement.y() + std::sqrt(reach * reach - across * across);
-    sum += weight * std::exp(-saturated(up, kMaxShift * setup_.targetHipHeight) / soft);
+    sum += weight * std::exp(-saturated(up, kMaxSink * setup_.targetHipHeight) / soft);
     weights += weight;
   }
   return -soft * std::log(sum / weights);
 }
 
 // A foot-driven leg may be led so far ahead that a person's leg is nearly level: then the body lets go of it.
-double Pelvis::steepness(const Leg& leg, double across, double reach) const {
-  if (!setup_.person || !leg.footDriven) return 1;
-  return smoothStep((1 - across * across / (reach * reach)) / kNearLevel);
+double Pelvis::steepness(const BodySupport& support, double across, double reach) {
+  if (!(support.nearLevel > 0)) return 1;
+  return smoothStep((1 - across * across / (reach * reach)) / support.nearLevel);
 }
 
 double Pelvis::changeOf(const Leg& leg, const BodyFrame& frame, const Quat& turn) const {
-  if (leg.footDriven) return 1;
-  const double change = (leg.goal - frame.positions[leg.end] - hipDisplacement({turn, 0}, leg, frame)).norm();
+  if (leg.spec.drive) return 1;
+  const double change =
+      (leg.goal.position - frame.positions[leg.spec.end] - hipDisplacement({turn, 0}, leg.spec, frame)).norm();
   return change / (change + kSoftChange * setup_.targetHipHeight);
 }
 
 double Pelvis::shiftFor(std::span<const Leg> legs, const BodyFrame& frame, const Quat& turn, double rise) const {
+  if (legs.empty()) return rise;
   const double height = setup_.targetHipHeight;
-  const bool byAngles = setup_.person && !anyFootDriven(legs);
-  const double soft = (byAngles ? kSoftStretch : kSoftFar) * height;
   double sum = 0;
   for (const Leg& leg : legs) {
-    const Vec3 hipGoes = hipDisplacement({turn, 0}, leg, frame);
-    const Vec3 displacement = leg.goal - frame.positions[leg.upper] - hipGoes - Vec3(0, rise, 0);
+    const BodySupport& support = leg.spec.support;
+    const Vec3 hipGoes = hipDisplacement({turn, 0}, leg.spec, frame);
+    const Vec3 displacement = leg.goal.position - frame.positions[leg.spec.upper] - hipGoes - Vec3(0, rise, 0);
     if (displacement.y() >= 0) continue;
-    const double length = kMaxStretch * leg.length, across = std::hypot(displacement.x(), displacement.z());
+    const double length = kMaxStretch * leg.spec.length, across = std::hypot(displacement.x(), displacement.z());
     const double down = std::sqrt(std::max(length * length - across * across, 0.0));
-    const double needed =
-        followed(leg) * steepness(leg, across, length) * softPositive(-displacement.y() - down, soft * leg.changed);
+    const double soft = support.softStretch * height;
+    const double needed = followed(leg.state) * steepness(support, across, length) *
+                          softPositive(-displacement.y() - down, soft * leg.state.changed);
     sum += needed * needed * needed * needed;
   }
   // The most that a leg asks for, but without a kink where another takes over.
-  const double most = std::sqrt(std::sqrt(sum));
-  const double down = byAngles || (!setup_.person && !tilt_.tilts())
-                          ? std::min(most, kMaxShift * height)
-                          : saturated(most, (tilt_.tilts() ? kMaxAtEnd : kMaxShift) * height);
-  const double shift = rise - down;
+  const BodySupport& support = legs.front().spec.support;
+  const double most = std::sqrt(std::sqrt(sum)), bound = support.maxSink * height;
+  const double shift = rise - (support.sinksSoftly ? saturated(most, bound) : std::min(most, bound));
   return shift + raiseFor(legs, frame, shift);
 }
 
@@ -226,15 +215,15 @@ double Pelvis::shiftFor(std::span<const Leg> legs, const BodyFrame& frame, const
 // that the pose has above its hip (a handstand, a high kick, legs that point up) is to stay there.
 double Pelvis::raiseFor(std::span<const Leg> legs, const BodyFrame& frame, double shift) const {
   double sum = 0;
-  for (const Leg& leg : legs) {
-    const Vec3 displacement = leg.goal - frame.positions[leg.upper] - Vec3(0, shift, 0);
-    const Vec3 own = (leg.footDriven ? leg.position : frame.positions[leg.end]) - frame.positions[leg.upper];
-    const double least = leg.footDriven ? leg.folded : std::min(kKneesFold * leg.folded, own.norm());
+  for (const auto& [spec, state, goal] : legs) {
+    const Vec3 displacement = goal.position - frame.positions[spec.upper] - Vec3(0, shift, 0);
+    const Vec3 own = (spec.drive ? state.position : frame.positions[spec.end]) - frame.positions[spec.upper];
+    const double least = spec.drive ? spec.support.nearest : std::min(spec.support.nearest, own.norm());
     const double across = std::hypot(displacement.x(), displacement.z());
-    if (leg.hock || across >= least || !(leg.footDriven || setup_.person)) continue;  // hocks fold as well
+    if (across >= least) continue;
     const double lacks = std::sqrt(least * least - across * across) + displacement.y();
     const double below = smoothStep(-own.y() / (kClearlyBelow * least));
-    const double needed = below * followed(leg) * softPositive(lacks, kSoftFold * setup_.targetHipHeight);
+    const double needed = below * followed(state) * softPositive(lacks, kSoftFold * setup_.targetHipHeight);
     sum += needed * needed * needed * needed;
   }
   return std::sqrt(std::sqrt(sum));

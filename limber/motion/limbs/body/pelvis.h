@@ -38,7 +38,7 @@ class Pelvis {
   // alone may be as straight as it is.
   double changeOf(const Leg& leg, const BodyFrame& frame, const Quat& turn = Quat::Identity()) const;
   // Of a leg's hip by that move, in the person's space.
-  Vec3 hipDisplacement(const Move& move, const Leg& leg, const BodyFrame& frame) const;
+  Vec3 hipDisplacement(const Move& move, const LegSpec& leg, const BodyFrame& frame) const;
   void apply(const Move& move, Pose& target, BodyFrame& frame) const;
   const TrunkTilt& trunk() const { return tilt_; }
 
@@ -47,7 +47,7 @@ class Pelvis {
   // `rise`, and down as far as the leg that needs it most requires.
   double shiftFor(std::span<const Leg> legs, const BodyFrame& frame, const Quat& turn, double rise) const;
   double raiseFor(std::span<const Leg> legs, const BodyFrame& frame, double shift) const;
-  double steepness(const Leg& leg, double across, double reach) const;
+  static double steepness(const BodySupport& support, double across, double reach);
   double footDrivenOffset(std::span<const Leg> legs, const BodyFrame& frame) const;
 
   const RetargetSetup& setup_;

@@ -42,8 +42,9 @@ Skeleton withHipJoints(const Skeleton& person) {
 
 class PelvisOf {
  public:
-  explicit PelvisOf(const Skeleton& target)
-      : target_(target),
+  explicit PelvisOf(const Skeleton& target, const Skeleton& source = practiceHumanoid())
+      : person_(source),
+        target_(target),
         setup_(person_, target_, matchSkeletons(person_, target_), {}),
         root_(setup_),
         pelvis_(setup_, root_),
@@ -61,7 +62,7 @@ class PelvisOf {
   Vec3 line() const { return (at("leftUpperLeg") - at("rightUpperLeg")).normalized(); }
   double leanDegrees() const { return std::asin(line().y()) * 180 / kPi; }
 
-  const Skeleton person_ = practiceHumanoid(), target_;
+  const Skeleton person_, target_;
   RetargetSetup setup_;
   RootPositioner root_;
   Pelvis pelvis_;
@@ -118,9 +119,10 @@ TEST(Pelvis, HipsGoWhereTheMoveSays) {
     std::vector<Leg>& legs = goals.legs();
     ASSERT_EQ(legs.size(), 2u);
     for (Leg& leg : legs) {
-      leg.contact.strength = 1;
-      leg.goal = wide.frame_.positions[leg.end] + Vec3(0, 0.03, leg.upper == legs[0].upper ? 0.1 : -0.05);
-      leg.changed = wide.pelvis_.changeOf(leg, wide.frame_);
+      leg.state.contact.strength = 1;
+      leg.goal.position =
+          wide.frame_.positions[leg.spec.end] + Vec3(0, 0.03, leg.spec.upper == legs[0].spec.upper ? 0.1 : -0.05);
+      leg.state.changed = wide.pelvis_.changeOf(leg, wide.frame_);
     }
     const Pelvis::Move move = wide.pelvis_.moveFor(legs, wide.frame_);
     EXPECT_GT(toRotationVector(move.turn).norm(), 0.05);
@@ -128,9 +130,9 @@ TEST(Pelvis, HipsGoWhereTheMoveSays) {
     const BodyFrame before = wide.frame_;
     wide.pelvis_.apply(move, wide.pose_, wide.frame_);
     for (const Leg& leg : legs) {
-      const Vec3 displacement = wide.frame_.positions[leg.upper] - before.positions[leg.upper];
-      EXPECT_LT((displacement - wide.pelvis_.hipDisplacement(move, leg, before)).norm(), 1e-9);
-      EXPECT_LT(wide.frame_.rotations[leg.upper].angularDistance(before.rotations[leg.upper]), 1e-6);
+      const Vec3 displacement = wide.frame_.positions[leg.spec.upper] - before.positions[leg.spec.upper];
+      EXPECT_LT((displacement - wide.pelvis_.hipDisplacement(move, leg.spec, before)).norm(), 1e-9);
+      EXPECT_LT(wide.frame_.rotations[leg.spec.upper].angularDistance(before.rotations[leg.spec.upper]), 1e-6);
     }
   }
 }
@@ -141,8 +143,8 @@ TEST(Pelvis, ALegIsChangedAsFarAsItsGoalIsElsewhere) {
   LimbGoals goals(person.setup_, person.root_);
   Leg& leg = goals.legs()[0];
   const auto changed = [&](const Vec3& displacement, const Quat& turned) {
-    leg.goal = person.frame_.positions[leg.end] + person.pelvis_.hipDisplacement({turned, 0}, leg, person.frame_) +
-               displacement;
+    leg.goal.position = person.frame_.positions[leg.spec.end] +
+                        person.pelvis_.hipDisplacement({turned, 0}, leg.spec, person.frame_) + displacement;
     return person.pelvis_.changeOf(leg, person.frame_, turned);
   };
   const Quat turned = turn(Vec3::UnitY(), 10);
@@ -159,14 +161,14 @@ TEST(Pelvis, NothingJumpsWhereALegBecomesTooShort) {
   person.level();
   LimbGoals goals(person.setup_, person.root_);
   Leg &leg = goals.legs()[0], &other = goals.legs()[1];
-  other.goal = person.frame_.positions[other.end];
-  leg.contact.strength = 1;
-  const Vec3 hip = person.frame_.positions[leg.upper];
-  const double length = (person.frame_.positions[leg.end] - hip).norm();
+  other.goal.position = person.frame_.positions[other.spec.end];
+  leg.state.contact.strength = 1;
+  const Vec3 hip = person.frame_.positions[leg.spec.upper];
+  const double length = (person.frame_.positions[leg.spec.end] - hip).norm();
   double before = 0;
   for (int step = 0; step < 400; ++step) {
-    leg.goal = hip + length * Vec3(0.003 * step, -0.5, 0);
-    leg.changed = person.pelvis_.changeOf(leg, person.frame_);
+    leg.goal.position = hip + length * Vec3(0.003 * step, -0.5, 0);
+    leg.state.changed = person.pelvis_.changeOf(leg, person.frame_);
     const double up = person.pelvis_.moveFor(goals.legs(), person.frame_).up;
     if (step > 0) {
       EXPECT_LT(std::abs(up - before), 0.01 * length) << step;
@@ -200,8 +202,8 @@ TEST(Pelvis, FeetAboveTheHipsDoNotLiftTheBody) {
     person.level();
     LimbGoals goals(person.setup_, person.root_);
     for (Leg& leg : goals.legs()) {
-      leg.goal = person.frame_.positions[leg.end];
-      EXPECT_GT(leg.goal.y(), person.frame_.positions[leg.upper].y()) << position.name;
+      leg.goal.position = person.frame_.positions[leg.spec.end];
+      EXPECT_GT(leg.goal.position.y(), person.frame_.positions[leg.spec.upper].y()) << position.name;
     }
     EXPECT_NEAR(person.pelvis_.moveFor(goals.legs(), person.frame_).up, 0, 1e-3) << position.name;
   }
@@ -218,12 +220,12 @@ TEST(Pelvis, NothingJumpsWhereAFootRisesPastItsHip) {
     person.level();
     LimbGoals goals(person.setup_, person.root_);
     Leg &leg = goals.legs()[0], &other = goals.legs()[1];
-    other.goal = person.frame_.positions[other.end];
-    const Vec3 hip = person.frame_.positions[leg.upper], foot = person.frame_.positions[leg.end];
-    leg.goal = hip + 0.4 * leg.folded * (foot - hip).normalized();
+    other.goal.position = person.frame_.positions[other.spec.end];
+    const Vec3 hip = person.frame_.positions[leg.spec.upper], foot = person.frame_.positions[leg.spec.end];
+    leg.goal.position = hip + 0.4 * leg.spec.folded * (foot - hip).normalized();
     const double up = person.pelvis_.moveFor(goals.legs(), person.frame_).up;
     if (step > 0) {
-      EXPECT_LT(std::abs(up - before), 0.03 * leg.folded) << step;
+      EXPECT_LT(std::abs(up - before), 0.03 * leg.spec.folded) << step;
     }
     highest = std::max(highest, up);
     before = up;
@@ -237,36 +239,36 @@ TEST(Pelvis, TheBodyRisesOverAGoalThatIsAboveItsHip) {
   PelvisOf person(practiceHumanoid());
   person.level();
   LimbGoals goals(person.setup_, person.root_);
-  for (Leg& leg : goals.legs()) leg.goal = person.frame_.positions[leg.upper] + Vec3(0, 0.2, 0.05);
+  for (Leg& leg : goals.legs()) leg.goal.position = person.frame_.positions[leg.spec.upper] + Vec3(0, 0.2, 0.05);
   EXPECT_GT(person.pelvis_.moveFor(goals.legs(), person.frame_).up, 0.3);
 }
 
 // A foot-driven one is led away in front, on the ground, as of someone who falls: it pulls the body down, and
 // lets go of it once the leg is nearly level.
 TEST(Pelvis, AFootTooFarAheadLetsGoOfTheBody) {
-  PelvisOf person(practiceHumanoid());
+  PelvisOf person(practiceHumanoid(), limber::testing::withHocks(practiceHumanoid()));
   person.level();
   LimbGoals goals(person.setup_, person.root_);
   Leg &leg = goals.legs()[0], &other = goals.legs()[1];
-  other.goal = person.frame_.positions[other.end];
+  other.goal.position = person.frame_.positions[other.spec.end];
   for (Leg& each : goals.legs()) {
-    each.footDriven = true;
-    each.changed = 1;
-    each.bentReach = each.length;
+    ASSERT_TRUE(each.spec.drive);
+    each.state.changed = 1;
+    each.state.bentReach = each.spec.length;
   }
-  const Vec3 hip = person.frame_.positions[leg.upper];
+  const Vec3 hip = person.frame_.positions[leg.spec.upper];
   double before = 0, lowest = 0;
   for (int step = 0; step < 400; ++step) {
-    leg.goal = hip + leg.length * Vec3(0, -0.7, 0.005 * step);
+    leg.goal.position = hip + leg.spec.length * Vec3(0, -0.7, 0.005 * step);
     const double up = person.pelvis_.moveFor(goals.legs(), person.frame_).up;
     if (step > 0) {
-      EXPECT_LT(std::abs(up - before), 0.03 * leg.length) << step;
+      EXPECT_LT(std::abs(up - before), 0.03 * leg.spec.length) << step;
     }
     lowest = std::min(lowest, up);
     before = up;
   }
-  EXPECT_LT(lowest, -0.1 * leg.length);
-  EXPECT_GT(before, -0.05 * leg.length);
+  EXPECT_LT(lowest, -0.1 * leg.spec.length);
+  EXPECT_GT(before, -0.05 * leg.spec.length);
 }
 
 // A quadruped that was matched by its form.
@@ -283,7 +285,9 @@ class PelvisOfFour : public ::testing::Test {
     goals_.setFeet(source_, frame_, 0);
     before_ = frame_;
   }
-  double upAt(const Leg& leg) const { return (frame_.positions[leg.upper] - before_.positions[leg.upper]).y(); }
+  double upAt(const Leg& leg) const {
+    return (frame_.positions[leg.spec.upper] - before_.positions[leg.spec.upper]).y();
+  }
 
   const Skeleton animal_ = limber::testing::quadruped(0.5), other_ = limber::testing::quadruped(0.4);
   const RetargetSetup setup_{animal_, other_, limber::testing::matchByForm(animal_, other_), {}};
@@ -296,8 +300,8 @@ class PelvisOfFour : public ::testing::Test {
 TEST_F(PelvisOfFour, HipsAndShouldersFollowTheirOwnLegs) {
   pose(Quat::Identity());
   for (Leg& leg : goals_.legs()) {
-    EXPECT_EQ(leg.fore, other_.joints[leg.upper].name.starts_with("b1"));
-    if (leg.fore) leg.bentReach *= 0.8;
+    EXPECT_EQ(leg.spec.fore, other_.joints[leg.spec.upper].name.starts_with("b1"));
+    if (leg.spec.fore) leg.state.bentReach *= 0.8;
   }
   goals_.pelvis().apply(goals_.pelvisMove(frame_), to_, frame_);
   const double shoulders = upAt(goals_.legs().back()), hips = upAt(goals_.legs().front());
@@ -308,9 +312,9 @@ TEST_F(PelvisOfFour, HipsAndShouldersFollowTheirOwnLegs) {
 TEST_F(PelvisOfFour, FeetThatCannotReachPullTheBodyDownALittle) {
   pose(Quat::Identity());
   for (Leg& leg : goals_.legs()) {
-    if (!leg.fore) continue;
-    leg.goal.y() -= 2;
-    leg.bentReach = (leg.goal - frame_.positions[leg.upper]).norm();  // its bend asks for nothing
+    if (!leg.spec.fore) continue;
+    leg.goal.position.y() -= 2;
+    leg.state.bentReach = (leg.goal.position - frame_.positions[leg.spec.upper]).norm();  // its bend asks for nothing
   }
   goals_.pelvis().apply(goals_.pelvisMove(frame_), to_, frame_);
   EXPECT_LT(upAt(goals_.legs().back()), -0.1 * setup_.targetHipHeight);
@@ -321,9 +325,9 @@ TEST_F(PelvisOfFour, FeetThatCannotReachPullTheBodyDownALittle) {
 TEST_F(PelvisOfFour, WhoLiesOnOneSideIsNotMovedByLegs) {
   pose(turn(Vec3::UnitZ(), 90));
   for (Leg& leg : goals_.legs()) {
-    EXPECT_NEAR(leg.upright, 0, 1e-6);
-    leg.bentReach *= 1.3;
-    leg.goal += Vec3(0, 0.4, 0);
+    EXPECT_NEAR(leg.state.upright, 0, 1e-6);
+    leg.state.bentReach *= 1.3;
+    leg.goal.position += Vec3(0, 0.4, 0);
   }
   goals_.pelvis().apply(goals_.pelvisMove(frame_), to_, frame_);
   for (const Leg& leg : goals_.legs()) EXPECT_NEAR(upAt(leg), 0, 1e-6);

@@ -215,10 +215,6 @@ void RootPositioner::settle(Pose& target, BodyFrame& frame) const {
   settleLoose(target, frame);
 }
 
-bool RootPositioner::isFootDriven(const AnimalLeg& leg) const {
-  return setup_.animalLegs.size() == 2 || setup_.quadruped || (leg.source.carrier && leg.target.carrier);
-}
-
 Index RootPositioner::carrierOf(Index joint) const {
   for (const Loose& loose : loose_) {
     if (loose.joint == joint) return loose.carrier;

@@ -38,10 +38,6 @@ class RootPositioner {
   // False where no joint carries the legs: turning it does nothing.
   bool turnsPelvis() const { return pelvis_.has_value(); }
 
-  // Whether the foot goes as the source's, whatever the joint angles: on roots of their own, on legs whose joints are
-  // others, or where there are but two to stand on.
-  bool isFootDriven(const AnimalLeg& leg) const;
-
   // The joint that a loose joint rides on; the joint itself where it hangs on the body.
   Index carrierOf(Index joint) const;
 

@@ -22,8 +22,8 @@ Vec3 level(const Vec3& v) {
 
 }  // namespace
 
-TailLift::TailLift(const RetargetSetup& setup, const RootPositioner& root) : setup_(setup), root_(root) {
-  if (!setup.person) tail_ = setup.targetTail;
+TailLift::TailLift(const RetargetSetup& setup, const RootPositioner& root)
+    : setup_(setup), root_(root), tail_(setup.targetTail) {
   if (tail_.size() < 2 || !setup.target->joints[tail_.front()].parent) tail_.clear();
 }
 
@@ -58,9 +58,8 @@ void TailLift::apply(Pose& target, BodyFrame& frame) const {
   const Vec3 ahead = heading(frame);
   if (!(ahead.norm() > 1e-6 * setup_.targetHipHeight)) return;
   const Quat up(Eigen::AngleAxisd(needed(frame), ahead.normalized().cross(Vec3::UnitY())));
-  Limb base;
-  base.end = tail_.front();
-  LimbReach(setup_, root_).turnEnd(base, up * frame.rotations[base.end], frame, target);
+  const Index base = tail_.front();
+  LimbReach(setup_, root_).turnEnd(base, up * frame.rotations[base], frame, target);
 }
 
 }  // namespace limber

@@ -1,6 +1,5 @@
 #include "limber/motion/limbs/body/trunk_tilt.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "limber/motion/limbs/smooth.h"
@@ -27,10 +26,6 @@ TrunkTilt::TrunkTilt(const RetargetSetup& setup, const RootPositioner& root) : s
     (leg.fore ? sourceShoulders_ : sourceHips_).push_back(leg.source.upper);
   }
   if (hips_.empty()) shoulders_.clear();
-}
-
-bool TrunkTilt::isFore(Index upper) const {
-  return std::find(shoulders_.begin(), shoulders_.end(), upper) != shoulders_.end();
 }
 
 void TrunkTilt::follow(const BodyFrame& source, Pose& target, BodyFrame& frame) const {

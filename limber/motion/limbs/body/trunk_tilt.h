@@ -17,8 +17,6 @@ class TrunkTilt {
 
   // False for people, and where legs or trunk are told otherwise.
   bool tilts() const { return !shoulders_.empty(); }
-  // Whether the target's leg that begins there is at the shoulders.
-  bool isFore(Index upper) const;
 
   // The shoulders rise over the hips by as much as the source's do, scaled. `frame` are the globals of `target` by
   // joint angles alone; both are brought up to date.

@@ -43,7 +43,7 @@ Vec3 level(const Vec3& v) {
 
 }  // namespace
 
-double footPitchFraction(const RetargetSetup& setup, const Leg& leg) {
+double footPitchFraction(const RetargetSetup& setup, const LegSpec& leg) {
   if (!leg.toes) return 1;
   const double source = setup.scale * lengthOf(setup.sourceNeutral, leg.sourceEnd, *leg.sourceToes);
   const double times = lengthOf(setup.targetNeutral, leg.end, *leg.toes) / (kLong * source);
@@ -53,8 +53,8 @@ double footPitchFraction(const RetargetSetup& setup, const Leg& leg) {
 void limitFootPitch(const RetargetSetup& setup, const RootPositioner& root, std::span<const Leg> legs, Pose& target,
                     BodyFrame& frame) {
   const NeutralPose& neutral = setup.targetNeutral;
-  for (const Leg& leg : legs) {
-    const double standing = setup.person ? leg.contact.flatness : 0;
+  for (const auto& [leg, state, goal] : legs) {
+    const double standing = leg.plantigrade ? state.contact.flatness : 0;
     if (!leg.toes || (leg.footPitch == 1 && standing == 0)) continue;
     const Quat turn = frame.rotations[leg.end] * neutral.rotations[leg.end].conjugate();
     const Vec3 restDirection = (neutral.positions[*leg.toes] - neutral.positions[leg.end]).normalized();
@@ -65,11 +65,12 @@ void limitFootPitch(const RetargetSetup& setup, const RootPositioner& root, std:
     const double less = (1 - leg.footPitch * (1 - flat)) * upright;
     const Vec3 wanted = ((1 - less) * line + less * resting).normalized();
     const Quat limited = shortestRotation(line, wanted) * frame.rotations[leg.end];
-    LimbReach(setup, root).turnEnd(leg, limited, frame, target);
+    LimbReach(setup, root).turnEnd(leg.end, limited, frame, target);
   }
 }
 
-void keepTipUp(const RetargetSetup& setup, const RootPositioner& root, const Leg& leg, Pose& target, BodyFrame& frame) {
+void keepTipUp(const RetargetSetup& setup, const RootPositioner& root, const LegSpec& leg, Pose& target,
+               BodyFrame& frame) {
   const NeutralPose& neutral = setup.targetNeutral;
   const Vec3 ankle = frame.positions[leg.end], line = frame.positions[*leg.tip] - ankle;
   const Quat turn = frame.rotations[leg.end] * neutral.rotations[leg.end].conjugate();
@@ -82,7 +83,7 @@ void keepTipUp(const RetargetSetup& setup, const RootPositioner& root, const Leg
   const double fraction = std::clamp((kUpTip + slope) / (kUpTip - kSteepTip), 0.0, 1.0);
   const double up = fraction * softPositive(-slopeToGround((ankle.y() - leg.toesGround) / length) - slope, kSoftTip);
   const Quat raised = Eigen::AngleAxisd(up, ahead.normalized().cross(Vec3::UnitY())) * frame.rotations[leg.end];
-  LimbReach(setup, root).turnEnd(leg, raised, frame, target);
+  LimbReach(setup, root).turnEnd(leg.end, raised, frame, target);
 }
 
 }  // namespace limber

@@ -24,7 +24,7 @@ LimitedFoot limited(double times, const Quat& hips, const Quat& foot, double fla
   const RetargetSetup setup(person, longFooted, matchSkeletons(person, longFooted), {});
   const RootPositioner root(setup);
   LimbGoals goals(setup, root);
-  goals.legs()[0].contact.flatness = flatness;
+  goals.legs()[0].state.contact.flatness = flatness;
   Pose pose = restPose(longFooted);
   const Index joint = longFooted.find("leftFoot").value();
   pose.locals[longFooted.find("hips").value()].rotation = hips;
@@ -39,7 +39,7 @@ LimitedFoot limited(double times, const Quat& hips, const Quat& foot, double fla
   }
   const double degrees = 180 / kPi;
   return {degrees * angleBetween(before, after.rotations[joint]),
-          degrees * angleBetween(Quat::Identity(), after.rotations[joint]), goals.legs()[0].footPitch};
+          degrees * angleBetween(Quat::Identity(), after.rotations[joint]), goals.legs()[0].spec.footPitch};
 }
 
 TEST(FootPitch, OrdinaryFeetPitchAsTheSources) {
@@ -85,13 +85,13 @@ Tip keptUp(double lift, double degrees) {
   const Leg& leg = goals.legs()[0];
   Pose pose = restPose(person);
   pose.locals[person.find("hips").value()].translation.y() += lift;
-  pose.locals[leg.end].rotation = turn(Vec3::UnitX(), degrees);
+  pose.locals[leg.spec.end].rotation = turn(Vec3::UnitX(), degrees);
   BodyFrame frame;
   setup.targetKinematics.globals(pose, frame);
-  const Quat before = frame.rotations[leg.end];
-  keepTipUp(setup, root, leg, pose, frame);
-  const double turned = angleBetween(before, frame.rotations[leg.end]) * 180 / kPi;
-  return {frame.positions[leg.tip.value()].y() - leg.toesGround, turned};
+  const Quat before = frame.rotations[leg.spec.end];
+  keepTipUp(setup, root, leg.spec, pose, frame);
+  const double turned = angleBetween(before, frame.rotations[leg.spec.end]) * 180 / kPi;
+  return {frame.positions[leg.spec.tip.value()].y() - leg.spec.toesGround, turned};
 }
 
 TEST(FootPitch, ATipThatTheSourceLacksStaysAboveTheGround) {
