@@ -299,8 +299,8 @@ Pose uprightPose(const Skeleton& skeleton, std::span<const Pose> motion, const S
 NeutralPose neutralPose(const Skeleton& skeleton, const Pose& resting, const SkeletonMap& map, MapSide side,
                         const Axes& axes) {
   const std::vector<Vec3> rest = posePositions(skeleton, resting);
-  const std::optional<Quat> person = map.isBiped() ? bodyFrame(map, side, rest) : std::nullopt;
-  return neutralPoseIn(person ? *person : frameAlong(axes), skeleton, resting, map, side);
+  const std::optional<Quat> ofLimbs = map.isBiped() ? bodyFrame(map, side, rest) : std::nullopt;
+  return neutralPoseIn(ofLimbs ? *ofLimbs : frameAlong(axes), skeleton, resting, map, side);
 }
 
 NeutralPose neutralPoseIn(const Quat& toBody, const Skeleton& skeleton, const Pose& resting, const SkeletonMap& map,
@@ -313,22 +313,22 @@ NeutralPose neutralPoseIn(const Quat& toBody, const Skeleton& skeleton, const Po
   Aims aims(skeleton.jointCount());
   std::vector<bool> isFoot(skeleton.jointCount()), isStanding(skeleton.jointCount());
   for (Vec3& position : rest) position = pose.toBody * position;
+  std::vector<LooseJoint> loose;
   if (map.isBiped()) {
     aimLimbs(map, side, rest, aims);
     aimBentTrunk(map, side, rest, aims);
-  }
-  const std::vector<LooseJoint> loose =
-      map.isBiped() ? looseJoints(skeleton, map, side, rest) : std::vector<LooseJoint>();
-  for (const Side each : kSides) {
-    const std::optional<Index> foot = firstOfPart(map, side, leg(each, Segment::kEnd));
-    if (!foot || !map.isBiped()) continue;
-    isFoot[*foot] = true;
-    const std::optional<Index> hip = firstOfPart(map, side, leg(each, Segment::kUpper)),
-                               knee = firstOfPart(map, side, leg(each, Segment::kMiddle)),
-                               toes = toesOf(skeleton, map, side, each, rest);
-    if (!hip || !knee || !toes) continue;
-    const bool hock = (rest[*toes] - rest[*foot]).norm() > kHock * (rest[*foot] - rest[*knee]).norm();
-    isStanding[*foot] = hock && angleOf(rest[*toes] - rest[*hip], -Vec3::UnitY()) < kFootGoesAlong;
+    loose = looseJoints(skeleton, map, side, rest);
+    for (const Side each : kSides) {
+      const std::optional<Index> foot = firstOfPart(map, side, leg(each, Segment::kEnd));
+      if (!foot) continue;
+      isFoot[*foot] = true;
+      const std::optional<Index> hip = firstOfPart(map, side, leg(each, Segment::kUpper)),
+                                 knee = firstOfPart(map, side, leg(each, Segment::kMiddle)),
+                                 toes = toesOf(skeleton, map, side, each, rest);
+      if (!hip || !knee || !toes) continue;
+      const bool hock = (rest[*toes] - rest[*foot]).norm() > kHock * (rest[*foot] - rest[*knee]).norm();
+      isStanding[*foot] = hock && angleOf(rest[*toes] - rest[*hip], -Vec3::UnitY()) < kFootGoesAlong;
+    }
   }
 
   pose.positions.resize(skeleton.jointCount());

@@ -85,7 +85,6 @@ double measuredGround(LowestHeights heights, double restGround, double hipHeight
 
 double legLength(const SkeletonMap& map, MapSide side, const NeutralPose& pose) {
   double length = 0;
-  if (!map.isBiped()) return length;
   for (const Side each : kSides) {
     const auto at = [&](Segment segment) -> std::optional<Vec3> {
       const std::optional<Index> joint = firstOfPart(map, side, body_part::leg(each, segment));
@@ -170,7 +169,9 @@ RetargetSetup::RetargetSetup(const Skeleton& from, const Skeleton& to, SkeletonM
       targetReading(readingOf(to, map.target)),
       options(asked),
       person(map.isBiped()),
-      quadruped(map.isQuadruped()),
+      rootFollows(person              ? RootFollows::kPelvis
+                  : map.isQuadruped() ? RootFollows::kHindquarters
+                                      : RootFollows::kEachJoint),
       sourceRest(restOf(from, motion ? std::span(motion->poses) : std::span<const Pose>(), map)),
       targetRest(map.twins ? poseAsTwin(from, sourceRest, to, *map.twins) : restPose(to)),
       sourceNeutral(neutralPose(from, sourceRest, map, MapSide::kSource, axesOf(from, sourceReading, person))),
@@ -185,7 +186,7 @@ RetargetSetup::RetargetSetup(const Skeleton& from, const Skeleton& to, SkeletonM
   } else {
     const BodySize one = bodySize(map, MapSide::kSource, sourceNeutral),
                    other = bodySize(map, MapSide::kTarget, targetNeutral);
-    const bool stand = quadruped || (one.isStanding() && other.isStanding());
+    const bool stand = rootFollows == RootFollows::kHindquarters || (one.isStanding() && other.isStanding());
     sourceHipHeight = stand ? one.height : one.across;
     targetHipHeight = stand ? other.height : other.across;
     animalLegs = limber::animalLegs(map, from, to, sourceNeutral, targetNeutral);
@@ -197,7 +198,7 @@ RetargetSetup::RetargetSetup(const Skeleton& from, const Skeleton& to, SkeletonM
     scale = legHeight(animalLegs, map, MapSide::kTarget, targetNeutral) /
             legHeight(animalLegs, map, MapSide::kSource, sourceNeutral);
   }
-  const double sourceLegs = legLength(map, MapSide::kSource, sourceNeutral);
+  const double sourceLegs = person ? legLength(map, MapSide::kSource, sourceNeutral) : 0;
   const double targetLegs = legLength(map, MapSide::kTarget, targetNeutral);
   if (sourceLegs > 0 && targetLegs > 0) {
     if (options.rootScale == RootScale::kHipHeight) legFraction = targetLegs / sourceLegs / scale;
@@ -218,7 +219,8 @@ RetargetSetup::RetargetSetup(const Skeleton& from, const Skeleton& to, SkeletonM
   // whose displacement is from rest, as far from there as the source.
   targetGround = lowest(groundJoints(map, MapSide::kTarget), targetNeutral.restPositions);
   // What rests in the air flies: its feet have no ground to keep to.
-  if ((targetGround >= kFlies * targetHipHeight && !quadruped) || map.unlikeBodies) animalLegs.clear();
+  const bool flies = targetGround >= kFlies * targetHipHeight && rootFollows != RootFollows::kHindquarters;
+  if (flies || map.unlikeBodies) animalLegs.clear();
   if (!animalLegs.empty()) targetTail = tailOf(targetReading.anatomy());
   if (!isOnGround(targetGround, targetHipHeight)) {
     if (!person)

@@ -51,6 +51,13 @@ struct RetargetOptions {
   std::shared_ptr<const BodySkin> skin = nullptr;  // the character's: arms stay outside it (ArmClearance)
 };
 
+// What follows the source's displacement, scaled; what is attached to it goes along.
+enum class RootFollows {
+  kPelvis,        // of people
+  kHindquarters,  // of quadrupeds that were matched by form
+  kEachJoint,     // of what is matched joint by joint: all may move
+};
+
 // Immutable once made; the skeletons must outlive it, and have no negative scales (plain_skeleton.h). `motion`, if
 // given, is the input of the retarget: it gives the ground, and a rest pose for the source where its own is not
 // upright.
@@ -70,8 +77,7 @@ struct RetargetSetup {
   // All bones are alike but for their size, and each joint of the target follows one: then every joint moves as its
   // partner does, from where it rests, and there is nothing to correct.
   bool sameBody = false;
-  bool quadruped =
-      false;        // SkeletonMap::isQuadruped, of no twins; else joints are matched one by one, and all may move
+  RootFollows rootFollows = RootFollows::kPelvis;
   Pose sourceRest;  // the rest pose, or the one that replaces it (uprightPose)
   Pose targetRest;  // the rest pose; of twins the pose in which it rests as the source does (poseAsTwin)
   NeutralPose sourceNeutral, targetNeutral;

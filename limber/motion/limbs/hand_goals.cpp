@@ -41,13 +41,12 @@ Vec3 atMost(const Vec3& displacement, double most) {
 }  // namespace
 
 HandGoals::HandGoals(const RetargetSetup& setup, const RootPositioner& root) : setup_(setup) {
-  if (!setup.person) return;
   using body_part::arm;
   using body_part::leg;
   const Gauge shoulders = gaugeOf(arm(Side::kLeft, Segment::kUpper), arm(Side::kRight, Segment::kUpper));
   hands_ = gaugeOf(arm(Side::kLeft, Segment::kMiddle), arm(Side::kLeft, Segment::kEnd));
   for (const Side side : kSides) {
-    const auto limb = findLimb(setup_, root, PartKind::kArm, side);
+    const auto limb = findArm(setup_, root, side);
     if (!limb) continue;
     arms_.push_back({*limb, {}});
     const Side other = opposite(side);

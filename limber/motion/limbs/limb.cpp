@@ -179,6 +179,10 @@ std::optional<LimbSpec> findLimb(const RetargetSetup& setup, const RootPositione
                   {u->target.front(), l->target.front(), e->target.front(), {}, {}, {}});
 }
 
+std::optional<LimbSpec> findArm(const RetargetSetup& setup, const RootPositioner& root, Side side) {
+  return setup.person ? findLimb(setup, root, PartKind::kArm, side) : std::nullopt;
+}
+
 std::vector<LegSpec> findLegs(const RetargetSetup& setup, const RootPositioner& root, const TrunkTilt& trunk) {
   if (setup.person) return uprightLegs(setup, root);
   std::vector<LegSpec> legs;

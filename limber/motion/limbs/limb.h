@@ -99,9 +99,11 @@ inline constexpr double kLifted = 0.6;
 // None where its joints are no children of each other, or a bone has no length.
 std::optional<LimbSpec> makeLimb(const RetargetSetup& setup, const RootPositioner& root, const LegJoints& source,
                                  const LegJoints& target);
-// Of a person's matched leg or arm, from hip to foot or shoulder to hand; none as well where one of them is not
+// Of the first pair of legs or arms, from hip to foot or shoulder to hand; none as well where one of them is not
 // matched.
 std::optional<LimbSpec> findLimb(const RetargetSetup& setup, const RootPositioner& root, PartKind kind, Side side);
+// The arm of an upright body: what else has arms stands on them.
+std::optional<LimbSpec> findArm(const RetargetSetup& setup, const RootPositioner& root, Side side);
 // All legs that both bodies have and that are solved for, those at the hips first.
 std::vector<LegSpec> findLegs(const RetargetSetup& setup, const RootPositioner& root, const TrunkTilt& trunk);
 

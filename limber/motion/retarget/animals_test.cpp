@@ -187,7 +187,7 @@ TEST(RetargetAnimals, PawsGoTheSourcesWay) {
   for (const Skeleton& other : {nameless(withJointBefore(limber::testing::scaled(quadruped(0.45), 2), "n1", "throat")),
                                 nameless(onTheGround(limber::testing::scaled(quadruped(0.45), 2), kPaws))}) {
     const RetargetSetup setup(one, other, matchSkeletons(one, other), {}, &motion);
-    ASSERT_TRUE(setup.quadruped);
+    ASSERT_EQ(setup.rootFollows, RootFollows::kHindquarters);
     ASSERT_EQ(setup.animalLegs.size(), 4u);
     for (const char* method : {"limb-ik", "spacetime"}) {
       SCOPED_TRACE(method);
@@ -246,7 +246,7 @@ TEST(RetargetAnimals, BodiesLieOnTheGround) {
     motion.poses.back().locals[0].translation.y() -= 0.03 * f;
   }
   const RetargetSetup setup(one, other, matchSkeletons(one, other), {});
-  ASSERT_TRUE(setup.quadruped);
+  ASSERT_EQ(setup.rootFollows, RootFollows::kHindquarters);
   for (const char* method : {"limb-ik", "spacetime"}) {
     const PoseSequence result = retargetFrames(findRetargetMethod(method), setup, motion);
     const std::vector<Affine> lies = poseGlobals(other, result.poses.back());

@@ -172,8 +172,12 @@ class Spacetime {
     const double toesUp = now.toesFloor - roll.y() - now.ankle.y(), ankleUp = now.ankleFloor - now.ankle.y();
     FootFrame asked;
     asked.lowest = unit * std::max(ankleUp, toesUp);
-    asked.height = std::max(leg.drive ? 0 : unit * (byToes ? toesUp : ankleUp), asked.lowest);
-    asked.rest = leg.drive ? kFootDrivenRest : contacts_->firmness(f, i);
+    asked.height = std::max(unit * (byToes ? toesUp : ankleUp), asked.lowest);
+    asked.rest = contacts_->firmness(f, i);
+    if (leg.drive) {  // its height is its own
+      asked.height = std::max(0.0, asked.lowest);
+      asked.rest = kFootDrivenRest;
+    }
     asked.displacement = unit * (now.ankle - to.positions[leg.upper]);
     asked.most = unit * planting::kStretched * leg.length;
     if (anchor == FootAnchor::kNone) asked.most = std::max(asked.most, asked.displacement.norm());

@@ -26,7 +26,11 @@ bool isBody(PartKind kind) {
 
 ArmClearance::ArmClearance(const RetargetSetup& setup, const RootPositioner& root)
     : setup_(setup), reach_(setup, root) {
-  if (!setup.options.skin || !setup.person || setup.sameBody) return;
+  if (!setup.options.skin || setup.sameBody) return;
+  for (const Side side : kSides) {
+    if (const std::optional<LimbSpec> limb = findArm(setup, root, side)) arms_.emplace_back().limb = *limb;
+  }
+  if (arms_.empty()) return;
   const Anatomy& anatomy = setup.targetReading.anatomy();
   std::vector<double> thick(setup.target->jointCount(), 0.0);
   for (Index j = 0; j < setup.target->jointCount(); ++j) {
@@ -38,14 +42,11 @@ ArmClearance::ArmClearance(const RetargetSetup& setup, const RootPositioner& roo
   }
   BodyFrame rest;
   setup.targetKinematics.globals(setup.targetRest, rest);
-  for (const Side side : kSides) {
-    const std::optional<LimbSpec> limb = findLimb(setup, root, PartKind::kArm, side);
-    if (!limb || body_.empty()) continue;
-    Arm& arm = arms_.emplace_back();
-    arm.limb = *limb;
+  if (body_.empty()) arms_.clear();
+  for (Arm& arm : arms_) {
     for (std::size_t i = 0; i < kAlong.size(); ++i) {
-      arm.thick[i] = kFlesh * thick[kAlong[i] > 1 ? limb->end : limb->lower];
-      arm.atRest[i] = std::max(depthAt(positionOf(*limb, kAlong[i], rest), rest).depth + arm.thick[i], 0.0);
+      arm.thick[i] = kFlesh * thick[kAlong[i] > 1 ? arm.limb.end : arm.limb.lower];
+      arm.atRest[i] = std::max(depthAt(positionOf(arm.limb, kAlong[i], rest), rest).depth + arm.thick[i], 0.0);
     }
   }
 }

@@ -112,7 +112,7 @@ void Pelvis::apply(const Move& move, Pose& target, BodyFrame& frame) const {
   root_.turnPelvis(move.turn, target, frame);
   if (std::abs(move.up) > 1e-9 * setup_.targetHipHeight) {
     root_.movePelvis(Vec3(0, move.up, 0), target, frame);
-  } else if (!setup_.person) {
+  } else if (!root_.turnsPelvis()) {  // else turning it did that
     root_.settle(target, frame);
   }
 }

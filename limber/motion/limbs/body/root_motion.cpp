@@ -12,35 +12,35 @@ Vec3 middleOf(std::span<const Index> joints, const std::vector<Vec3>& positions)
   return sum / static_cast<double>(joints.size());
 }
 
-RootPositioner::RootPositioner(const RetargetSetup& setup) : setup_(setup) {
-  const Skeleton& target = *setup.target;
-  if (!setup.person) {
-    findCarrierOfLegs();
-    if (setup.quadruped) {
+RootPositioner::RootPositioner(const RetargetSetup& setup)
+    : setup_(setup), movesEachJoint_(setup.sameBody || setup.rootFollows == RootFollows::kEachJoint) {
+  findCarrierOfLegs();
+  switch (setup.rootFollows) {
+    case RootFollows::kPelvis:
+      hips_ = setup.map.find(body_part::kPelvis)->target.front();
+      findPelvis();
+      break;
+    case RootFollows::kHindquarters:
       if (!hips_) hips_ = setup.map.find(body_part::kPelvis)->target.front();
-      moved_.push_back(*hips_);
       hindquarters_ = hindquartersOf(MapSide::kTarget);
       sourceHindquarters_ = hindquartersOf(MapSide::kSource);
       findTrunk();
-    } else {
-      for (const JointMatch& match : setup.map.matches) moved_.push_back(match.target.front());
+      break;
+    case RootFollows::kEachJoint:
       findCarried();
-    }
-    for (const AnimalLeg& leg : setup.animalLegs) {
-      if (!leg.target.carrier) continue;
-      addLoose({leg.target.end, *leg.target.carrier, true});
-      if (std::find(moved_.begin(), moved_.end(), leg.target.end) == moved_.end()) moved_.push_back(leg.target.end);
-    }
-    return;
+      break;
   }
-  hips_ = setup.map.find(body_part::kPelvis)->target.front();
-  moved_.push_back(*hips_);
-  findPelvis();
-  if (setup.sameBody) return;  // what is loose moves as its partner does
-  for (const LooseJoint& loose : looseJoints(target, setup.map, MapSide::kTarget, setup.targetNeutral.restPositions)) {
-    addLoose(loose);
-    moved_.push_back(loose.joint);
+  findLoose();
+}
+
+void RootPositioner::findLoose() {
+  for (const AnimalLeg& leg : setup_.animalLegs) {
+    if (leg.target.carrier) addLoose({leg.target.end, *leg.target.carrier, true});
   }
+  // On the same body what is loose moves as its partner does.
+  if (setup_.rootFollows != RootFollows::kPelvis || setup_.sameBody) return;
+  const std::vector<Vec3>& rest = setup_.targetNeutral.restPositions;
+  for (const LooseJoint& loose : looseJoints(*setup_.target, setup_.map, MapSide::kTarget, rest)) addLoose(loose);
 }
 
 void RootPositioner::addLoose(const LooseJoint& joint) {
@@ -138,19 +138,12 @@ void RootPositioner::findTrunk() {
 }
 
 void RootPositioner::apply(const Pose& source, const BodyFrame& sourceFrame, Pose& target, BodyFrame& frame) const {
-  if (!setup_.person) {
-    if (!hindquarters_.empty()) {
-      placeHindquarters(sourceFrame, target, frame);
-      return;
-    }
-    placeEach(source, sourceFrame, target, frame);
-    setup_.targetKinematics.update(target, frame);
-    return;
-  }
-  if (setup_.sameBody) {
+  if (setup_.rootFollows == RootFollows::kHindquarters) return placeHindquarters(sourceFrame, target, frame);
+  if (movesEachJoint_) {
     placeEach(source, sourceFrame, target, frame);
     setup_.targetKinematics.update(target, frame);
   }
+  if (setup_.rootFollows == RootFollows::kEachJoint) return;
   const Vec3 there = setup_.positionOf(pelvisOf(setup_.map, MapSide::kSource, sourceFrame.positions));
   movePelvis(there - pelvisOf(setup_.map, MapSide::kTarget, frame.positions), target, frame);
 }

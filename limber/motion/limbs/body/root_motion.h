@@ -41,9 +41,6 @@ class RootPositioner {
   // The joint that a loose joint rides on; the joint itself where it hangs on the body.
   Index carrierOf(Index joint) const;
 
-  // The joints whose translation the placing writes.
-  const std::vector<Index>& moved() const { return moved_; }
-
  private:
   struct Loose {
     Index joint = 0, carrier = 0;
@@ -57,9 +54,11 @@ class RootPositioner {
   void placeHindquarters(const BodyFrame& sourceFrame, Pose& target, BodyFrame& frame) const;
   void findCarried();
   void placeEach(const Pose& source, const BodyFrame& sourceFrame, Pose& target, const BodyFrame& frame) const;
+  void findLoose();
   void addLoose(const LooseJoint& loose);
 
   const RetargetSetup& setup_;
+  bool movesEachJoint_;           // as its partner, scaled, not as its parent takes it along
   std::optional<Index> hips_;     // of others than people the joint that carries all legs
   std::optional<Index> pelvis_;   // the joint that carries the legs and the trunk
   std::vector<Index> hipJoints_;  // of the legs, of four those behind
@@ -70,7 +69,6 @@ class RootPositioner {
   std::vector<Index> pelvisChildren_;  // what hangs on these and on the pelvis
   std::vector<Loose> loose_;
   std::vector<bool> carried_;  // of no people, #matches: whether nothing above it is matched, in the source either
-  std::vector<Index> moved_;
 };
 
 }  // namespace limber

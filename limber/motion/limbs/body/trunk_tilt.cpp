@@ -20,7 +20,7 @@ double slopeOf(double rise) {
 }  // namespace
 
 TrunkTilt::TrunkTilt(const RetargetSetup& setup, const RootPositioner& root) : setup_(setup), root_(root) {
-  if (!setup.quadruped || !root.turnsPelvis()) return;
+  if (setup.rootFollows != RootFollows::kHindquarters || !root.turnsPelvis()) return;
   for (const AnimalLeg& leg : setup.animalLegs) {
     (leg.fore ? shoulders_ : hips_).push_back(leg.target.upper);
     (leg.fore ? sourceShoulders_ : sourceHips_).push_back(leg.source.upper);
