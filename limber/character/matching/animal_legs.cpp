@@ -42,9 +42,12 @@ std::optional<Index> carrierOf(const Skeleton& skeleton, Index lower, const std:
 }
 
 // In mean heights of the matched joints, over the lowest of them; set by hand.
-constexpr double kLow = 0.2;      // 0.1 to kBegins; of where a leg rests, at most
-constexpr double kBegins = 0.35;  // kLow to 0.7; of its hip or shoulder, at least
-constexpr double kSteep = 1;      // slope, down over along; 0.5 to 2; of a leg, at least (45 degrees); set by hand
+struct StandingLeg {
+  double low = 0.2;      // 0.1 to begins; of where a leg rests, at most
+  double begins = 0.35;  // low to 0.7; of its hip or shoulder, at least
+  double steep = 1;      // slope, down over along; 0.5 to 2; of a leg, at least (45 degrees); set by hand
+};
+constexpr StandingLeg kStandingLeg;
 
 struct HeightsOf {
   const SkeletonMap& map;
@@ -59,14 +62,14 @@ struct HeightsOf {
   double over(Index joint) const { return (neutral.positions[joint].y() - lowest) / height; }
   bool isSteep(Index from, Index to) const {
     const Vec3 offset = neutral.positions[to] - neutral.positions[from];
-    return -offset.y() > kSteep * std::hypot(offset.x(), offset.z());
+    return -offset.y() > kStandingLeg.steep * std::hypot(offset.x(), offset.z());
   }
 };
 
 // Whether it comes down from the body to the ground in both.
 bool isStanding(const AnimalLeg& leg, const HeightsOf& source, const HeightsOf& target) {
-  return std::max(source.over(leg.source.end), target.over(leg.target.end)) < kLow &&
-         std::max(source.over(leg.source.upper), target.over(leg.target.upper)) >= kBegins &&
+  return std::max(source.over(leg.source.end), target.over(leg.target.end)) < kStandingLeg.low &&
+         std::max(source.over(leg.source.upper), target.over(leg.target.upper)) >= kStandingLeg.begins &&
          source.isSteep(leg.source.upper, leg.source.end) && target.isSteep(leg.target.upper, leg.target.end);
 }
 

@@ -8,6 +8,11 @@
 
 namespace limber {
 
+// The level part of a displacement.
+inline Vec3 alongGround(const Vec3& displacement) {
+  return {displacement.x(), 0, displacement.z()};
+}
+
 struct BodyFrame {
   std::vector<Quat> rotations;  // #J, global
   std::vector<Vec3> positions;  // #J, global

@@ -15,9 +15,12 @@ namespace limber {
 
 namespace {
 
-constexpr Index kFewJoints = 7;     // joints; 7 alone; of a body: a trunk, and two legs of three joints
-constexpr double kTogether = 0.05;  // body sizes; 0.01 to 0.2; between hips of one body, over the clip; set by hand
-constexpr int kMoments = 16;        // frames of a clip; 8 to 100; at which hips are compared; set by hand
+struct BodyGroups {
+  Index fewJoints = 7;     // joints; 7 alone; of a body: a trunk, and two legs of three joints
+  double together = 0.05;  // body sizes; 0.01 to 0.2; between hips of one body, over the clip; set by hand
+  int moments = 16;        // frames of a clip; 8 to 100; at which hips are compared; set by hand
+};
+constexpr BodyGroups kBodyGroups;
 
 // The joints that are kept, as numbers of the new skeleton.
 using NewIndex = std::vector<std::optional<Index>>;  // #J
@@ -54,7 +57,7 @@ struct Body {
 std::optional<Body> bodyBelow(const Skeleton& all, Index root) {
   const NewIndex kept = indexBelow(all, root);
   const Skeleton skeleton = keptOf(all, kept);
-  if (skeleton.jointCount() < kFewJoints) return std::nullopt;
+  if (skeleton.jointCount() < kBodyGroups.fewJoints) return std::nullopt;
   const Anatomy anatomy = readAnatomy(skeleton);
   const Part *left = anatomy.find(PartKind::kLeg, Side::kLeft), *right = anatomy.find(PartKind::kLeg, Side::kRight);
   const bool isStanding = left && right && std::min(left->confidence, right->confidence) >= kDoubtful;
@@ -72,9 +75,9 @@ std::optional<Body> bodyBelow(const Skeleton& all, Index root) {
 std::vector<std::vector<Vec3>> positionsOf(const Motion& motion) {
   std::vector<std::vector<Vec3>> moments;
   const double duration = motion.clips.empty() ? 0 : motion.clips.front().duration();
-  for (int i = 0; i < kMoments; ++i) {
+  for (int i = 0; i < kBodyGroups.moments; ++i) {
     Pose pose = restPose(motion.skeleton);
-    if (!motion.clips.empty()) sampleClip(motion.clips.front(), duration * i / (kMoments - 1), pose);
+    if (!motion.clips.empty()) sampleClip(motion.clips.front(), duration * i / (kBodyGroups.moments - 1), pose);
     moments.push_back(posePositions(motion.skeleton, pose));
   }
   return moments;
@@ -111,7 +114,7 @@ std::vector<Index> bodyRoots(const Motion& motion) {
     if (!body) continue;
     const auto goesWith = [&](const Body& other) {
       return std::all_of(moments.begin(), moments.end(), [&](const std::vector<Vec3>& positions) {
-        return (body->hips(positions) - other.hips(positions)).norm() < kTogether * body->size;
+        return (body->hips(positions) - other.hips(positions)).norm() < kBodyGroups.together * body->size;
       });
     };
     if (std::none_of(bodies.begin(), bodies.end(), goesWith)) bodies.push_back(*body);

@@ -14,15 +14,18 @@ namespace limber {
 
 namespace {
 
-// Radians; 15 to 40 degrees; a foot follows a shin that is turned by more; set by hand. A foot about as long as its
-// shin does not if the leg comes down from the hip as straight: it ends in a hock, and rests as birds' do.
-constexpr double kFootGoesAlong = 25 * kPi / 180;
-constexpr double kHock = 0.75;  // foot over shin; 0.6 to 0.9; set by hand on a walking machine with a bird's legs
-constexpr double kBent = 1.03;  // length over distance from end to end; 1.01 to 1.1; of a bent chain; set by hand
-constexpr double kNearAxis = 20 * kPi / 180;  // radians; 10 to 30 degrees; from an axis that is meant; set by hand
-// Radians from upright; 15 to 45 and 30 to 60 degrees; a trunk, and a neck, that lean by more are bent: artists build
-// upright ones with less; set by hand on statues.
-constexpr double kStoops = 25 * kPi / 180, kBows = 45 * kPi / 180;
+struct PoseAngles {
+  // Radians; 15 to 40 degrees; a foot follows a shin that is turned by more; set by hand. A foot about as long as its
+  // shin does not if the leg comes down from the hip as straight: it ends in a hock, and rests as birds' do.
+  double footGoesAlong = 25 * kPi / 180;
+  double hock = 0.75;                // foot over shin; 0.6 to 0.9; set by hand on a walking machine with a bird's legs
+  double bent = 1.03;                // length over distance from end to end; 1.01 to 1.1; of a bent chain; set by hand
+  double nearAxis = 20 * kPi / 180;  // radians; 10 to 30 degrees; from an axis that is meant; set by hand
+  // Radians from upright; 15 to 45 and 30 to 60 degrees; a trunk, and a neck, that lean by more are bent: artists build
+  // upright ones with less; set by hand on statues.
+  double stoops = 25 * kPi / 180, bows = 45 * kPi / 180;
+};
+constexpr PoseAngles kPoseAngles;
 // Lengths of people's arms and legs over that from the hips to the neck; 0.4 to 2 and 0.6 to 3; what artists
 // build, with a margin; set by hand.
 struct Range {
@@ -47,7 +50,7 @@ Vec3 nearestAxis(const Vec3& direction) {
 
 Vec3 snapped(const Vec3& direction) {
   const Vec3 axis = nearestAxis(direction);
-  return axis.dot(direction.normalized()) > std::cos(kNearAxis) ? axis : Vec3(direction.normalized());
+  return axis.dot(direction.normalized()) > std::cos(kPoseAngles.nearAxis) ? axis : Vec3(direction.normalized());
 }
 
 Vec3 sumOf(const std::vector<Vec3>& directions) {
@@ -108,7 +111,7 @@ Pose facingAhead(const Skeleton& skeleton, Pose pose, const SkeletonMap& map, Ma
   std::vector<Vec3> lefts = leftsOf(map, side, positions);
   for (Vec3& each : lefts) each.normalize();  // for hips that are turned against the shoulders: the mean direction
   const Vec3 trunk = stanceOf(skeleton, pose, map, side).head, level = sumOf(lefts);
-  const Vec3 up = angleOf(trunk, Vec3::UnitY()) < kStoops ? Vec3(Vec3::UnitY()) : Vec3(trunk.normalized());
+  const Vec3 up = angleOf(trunk, Vec3::UnitY()) < kPoseAngles.stoops ? Vec3(Vec3::UnitY()) : Vec3(trunk.normalized());
   const Vec3 left = level - level.dot(up) * up;
   if (!(left.norm() > 1e-6 * level.norm())) return pose;
   Mat3 axes;
@@ -244,11 +247,11 @@ void aimBentTrunk(const SkeletonMap& map, MapSide side, const std::vector<Vec3>&
   }
   const Vec3 up = Vec3::UnitY();
   const std::optional<Index> neck = firstOfPart(map, side, kNeck), head = firstOfPart(map, side, kHead);
-  if (neck && head) aims[*neck] = Aim{rest[*head] - rest[*neck], up, kBows};
+  if (neck && head) aims[*neck] = Aim{rest[*head] - rest[*neck], up, kPoseAngles.bows};
   const Index hips = trunk.front(), middle = trunk[trunk.size() / 2], top = trunk.back();
-  if (angleOf(rest[top] - rest[hips], up) < kStoops) return;
+  if (angleOf(rest[top] - rest[hips], up) < kPoseAngles.stoops) return;
   aims[hips] = Aim{rest[top] - rest[hips], up};
-  if (middle != hips && middle != top) aims[middle] = Aim{rest[top] - rest[middle], up, kStoops};
+  if (middle != hips && middle != top) aims[middle] = Aim{rest[top] - rest[middle], up, kPoseAngles.stoops};
 }
 
 }  // namespace
@@ -326,8 +329,8 @@ NeutralPose neutralPoseIn(const Quat& toBody, const Skeleton& skeleton, const Po
                                  knee = firstOfPart(map, side, leg(each, Segment::kMiddle)),
                                  toes = toesOf(skeleton, map, side, each, rest);
       if (!hip || !knee || !toes) continue;
-      const bool hock = (rest[*toes] - rest[*foot]).norm() > kHock * (rest[*foot] - rest[*knee]).norm();
-      isStanding[*foot] = hock && angleOf(rest[*toes] - rest[*hip], -Vec3::UnitY()) < kFootGoesAlong;
+      const bool hock = (rest[*toes] - rest[*foot]).norm() > kPoseAngles.hock * (rest[*foot] - rest[*knee]).norm();
+      isStanding[*foot] = hock && angleOf(rest[*toes] - rest[*hip], -Vec3::UnitY()) < kPoseAngles.footGoesAlong;
     }
   }
 
@@ -341,7 +344,7 @@ NeutralPose neutralPoseIn(const Quat& toBody, const Skeleton& skeleton, const Po
     if (aims[j] && angleOf(above * aims[j]->rest, aims[j]->neutral) >= aims[j]->tolerance) {
       turns[j] = (shortestRotation(above * aims[j]->rest, aims[j]->neutral) * above).normalized();
     }
-    const bool free = isStanding[j] || angleBetween(Quat::Identity(), above) < kFootGoesAlong;
+    const bool free = isStanding[j] || angleBetween(Quat::Identity(), above) < kPoseAngles.footGoesAlong;
     if (isFoot[j] && free) turns[j] = Quat::Identity();
     pose.rotations.push_back((turns[j] * restRotations[j]).normalized());
     pose.positions[j] =
@@ -381,7 +384,7 @@ bool isBent(std::span<const Index> joints, Index end, std::span<const Vec3> posi
   double pathLength = (positions[end] - positions[joints.back()]).norm();
   for (std::size_t i = 1; i < joints.size(); ++i)
     pathLength += (positions[joints[i]] - positions[joints[i - 1]]).norm();
-  return pathLength > kBent * (positions[end] - positions[joints.front()]).norm();
+  return pathLength > kPoseAngles.bent * (positions[end] - positions[joints.front()]).norm();
 }
 
 std::vector<Index> soleJoints(const SkeletonMap& map, MapSide side) {

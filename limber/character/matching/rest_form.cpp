@@ -15,13 +15,16 @@ namespace limber {
 
 namespace {
 
-// Fraction of the bones' length, by the squared sine between bone and line; 0.001 to 0.1; that may point away from the
-// line: 0.02 is 8 degrees for all of them. Measured: people in T-pose have 0.3 and more, with arms and legs hanging
-// parallel 0.1 by their feet; zeroed axes have 0.
-constexpr double kOffLine = 0.02;
-constexpr std::size_t kMinLimbs = 4;      // chains; 3 to 4; snakes and fish are straight and have a form all the same
-constexpr std::size_t kMinLimbBones = 2;  // bones; 2 alone: thigh and shin
-constexpr int kMaxMoments = 100;          // frames of each clip; 20 to 1000; bounds time; set by hand
+struct FormSearch {
+  // Fraction of the bones' length, by the squared sine between bone and line; 0.001 to 0.1; that may point away from
+  // the line: 0.02 is 8 degrees for all of them. Measured: people in T-pose have 0.3 and more, with arms and legs
+  // hanging parallel 0.1 by their feet; zeroed axes have 0.
+  double offLine = 0.02;
+  std::size_t minLimbs = 4;      // chains; 3 to 4; snakes and fish are straight and have a form all the same
+  std::size_t minLimbBones = 2;  // bones; 2 alone: thigh and shin
+  int maxMoments = 100;          // frames of each clip; 20 to 1000; bounds time; set by hand
+};
+constexpr FormSearch kFormSearch;
 
 // #J, the joint in which each joint's bone ends: the only child, or the only one that has children itself. Twist joints
 // and tips beside it carry nothing.
@@ -51,7 +54,7 @@ std::vector<Chain> limbsOf(const Skeleton& skeleton) {
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
     Chain chain;
     for (std::optional<Index> at = j; begins[j] && at; at = ends[*at]) chain.push_back(*at);
-    if (chain.size() > kMinLimbBones) limbs.push_back(std::move(chain));
+    if (chain.size() > kFormSearch.minLimbBones) limbs.push_back(std::move(chain));
   }
   return limbs;
 }
@@ -90,7 +93,7 @@ Pose turnedAhead(const Skeleton& skeleton, const Pose& pose) {
 
 bool hasForm(const Skeleton& skeleton, const Pose& pose) {
   const std::vector<Chain> limbs = limbsOf(skeleton);
-  if (limbs.size() < kMinLimbs) return true;
+  if (limbs.size() < kFormSearch.minLimbs) return true;
   const std::vector<Vec3> positions = posePositions(skeleton, pose);
   Mat3 sum = Mat3::Zero();
   double length = 0;
@@ -105,7 +108,7 @@ bool hasForm(const Skeleton& skeleton, const Pose& pose) {
   }
   if (!(length > 0) || !sum.allFinite()) return true;
   const Eigen::SelfAdjointEigenSolver<Mat3> solver(sum, Eigen::EigenvaluesOnly);
-  return solver.eigenvalues()[2] < (1 - kOffLine) * length;
+  return solver.eigenvalues()[2] < (1 - kFormSearch.offLine) * length;
 }
 
 std::optional<Pose> poseWithForm(const Skeleton& skeleton, std::span<const Pose> motion) {
@@ -125,9 +128,9 @@ std::optional<Pose> poseWithForm(const Motion& motion) {
   if (hasForm(motion.skeleton, restPose(motion.skeleton))) return std::nullopt;
   std::vector<Pose> poses;
   for (const Clip& clip : motion.clips) {
-    for (int i = 0; i < kMaxMoments; ++i) {
+    for (int i = 0; i < kFormSearch.maxMoments; ++i) {
       poses.push_back(restPose(motion.skeleton));
-      sampleClip(clip, clip.duration() * i / kMaxMoments, poses.back());
+      sampleClip(clip, clip.duration() * i / kFormSearch.maxMoments, poses.back());
     }
   }
   return poseWithForm(motion.skeleton, poses);

@@ -13,15 +13,18 @@ namespace limber {
 
 namespace {
 
-// Hip heights; 0.03 to 0.15; a motion whose feet come this near to their positions in rest pose has the rest pose's
-// ground; set by hand (0.015 before).
-constexpr double kSameGround = 0.08;
-// Hip heights over the origin; 0.3 to 0.9; from there on a rest pose does not stand on it; set on a swimmer's clip.
-constexpr double kFlies = 0.5;
-// Set by hand.
-constexpr double kStill = 0.4;         // hip heights a second; 0.2 to 0.7; a lowest foot joint slower than this rests
-constexpr double kFewStand = 0.05;     // fraction of frames; 0.01 to 0.2; below it the feet never rest (a run)
-constexpr double kBelowGround = 0.05;  // fraction of frames; 0 to 0.1; that may lie below the ground, for noise
+struct GroundReading {
+  // Hip heights; 0.03 to 0.15; a motion whose feet come this near to their positions in rest pose has the rest pose's
+  // ground; set by hand (0.015 before).
+  double sameGround = 0.08;
+  // Hip heights over the origin; 0.3 to 0.9; from there on a rest pose does not stand on it; set on a swimmer's clip.
+  double flies = 0.5;
+  // Set by hand.
+  double still = 0.4;         // hip heights a second; 0.2 to 0.7; a lowest foot joint slower than this rests
+  double fewStand = 0.05;     // fraction of frames; 0.01 to 0.2; below it the feet never rest (a run)
+  double belowGround = 0.05;  // fraction of frames; 0 to 0.1; that may lie below the ground, for noise
+};
+constexpr GroundReading kGroundReading;
 
 double lowest(const std::vector<Index>& joints, const std::vector<Vec3>& positions) {
   double y = std::numeric_limits<double>::infinity();
@@ -51,7 +54,7 @@ LowestHeights lowestHeights(const BodyKinematics& kinematics, const NeutralPose&
     heights.all.push_back(frame.positions[*low].y());
     const Quat turn = frame.rotations[*low] * neutral.rotations[*low].conjugate();
     if ((turn * Vec3::UnitY()).y() > 0) ++heights.soleDown;
-    const double stillDistance = kStill * hipHeight * motion.frameSeconds;
+    const double stillDistance = kGroundReading.still * hipHeight * motion.frameSeconds;
     const bool still =
         !before.positions.empty() && (frame.positions[*low] - before.positions[*low]).norm() < stillDistance;
     if (still) heights.standing.push_back(heights.all.back());
@@ -68,19 +71,21 @@ double quantile(std::vector<double>& values, double fraction) {
 
 // A rest pose that hangs about the origin instead of standing on it tells nothing about the ground.
 bool isOnGround(double ground, double hipHeight) {
-  return ground > -0.25 * hipHeight && ground < kFlies * hipHeight;
+  return ground > -0.25 * hipHeight && ground < kGroundReading.flies * hipHeight;
 }
 
 // The rest pose's ground where the motion comes down to it, or where soles look up throughout, as a swimmer's; else the
 // middle height of what is lowest and still. People who sit down, lie or jump about are still at many heights, so that
 // middle alone says too little.
 double measuredGround(LowestHeights heights, double restGround, double hipHeight) {
-  if (std::abs(quantile(heights.all, kBelowGround) - restGround) < kSameGround * hipHeight) return restGround;
-  const bool afloat = static_cast<double>(heights.soleDown) < kFewStand * static_cast<double>(heights.all.size());
+  if (std::abs(quantile(heights.all, kGroundReading.belowGround) - restGround) < kGroundReading.sameGround * hipHeight)
+    return restGround;
+  const bool afloat =
+      static_cast<double>(heights.soleDown) < kGroundReading.fewStand * static_cast<double>(heights.all.size());
   if (afloat && isOnGround(restGround, hipHeight)) return restGround;
   const bool isStanding =
-      static_cast<double>(heights.standing.size()) > kFewStand * static_cast<double>(heights.all.size());
-  return isStanding ? quantile(heights.standing, 0.25) : quantile(heights.all, kBelowGround);
+      static_cast<double>(heights.standing.size()) > kGroundReading.fewStand * static_cast<double>(heights.all.size());
+  return isStanding ? quantile(heights.standing, 0.25) : quantile(heights.all, kGroundReading.belowGround);
 }
 
 double legLength(const SkeletonMap& map, MapSide side, const NeutralPose& pose) {
@@ -219,7 +224,8 @@ RetargetSetup::RetargetSetup(const Skeleton& from, const Skeleton& to, SkeletonM
   // whose displacement is from rest, as far from there as the source.
   targetGround = lowest(groundJoints(map, MapSide::kTarget), targetNeutral.restPositions);
   // What rests in the air flies: its feet have no ground to keep to.
-  const bool flies = targetGround >= kFlies * targetHipHeight && rootFollows != RootFollows::kHindquarters;
+  const bool flies =
+      targetGround >= kGroundReading.flies * targetHipHeight && rootFollows != RootFollows::kHindquarters;
   if (flies || map.unlikeBodies) animalLegs.clear();
   if (!animalLegs.empty()) targetTail = tailOf(targetReading.anatomy());
   if (!isOnGround(targetGround, targetHipHeight)) {
@@ -238,7 +244,7 @@ RetargetSetup::RetargetSetup(const Skeleton& from, const Skeleton& to, SkeletonM
   };
   const double apart =
       restsAt(to, MapSide::kTarget, targetKinematics) - scale * restsAt(from, MapSide::kSource, sourceKinematics);
-  const bool oneSpace = std::abs(apart) < kSameGround * targetHipHeight;
+  const bool oneSpace = std::abs(apart) < kGroundReading.sameGround * targetHipHeight;
   if (person && sameBody && oneSpace && !options.sourceGround) targetGround = scale * sourceGround;
 }
 

@@ -22,13 +22,16 @@ namespace limber {
 
 namespace {
 
-// Matches; 2 to 5, 5 to 10; that are needed at least, with names for some of them and by form alone; set by hand.
-constexpr std::size_t kFewNamed = 3, kFewByForm = 7;
-// Confidences, 0 to 1: below kDoubtful they are listed as doubtful; set by hand.
-constexpr double kEqualTrees = 0.5;    // of joints that are matched by their number in equal trees alone
-constexpr double kEqualNames = 0.9;    // of names that are equal but for their case, separators and prefixes
-constexpr double kOneOfSeveral = 0.5;  // at most, of one palm joint, or pelvis, of several
-constexpr double kFingerByForm = 0.7;  // at most: form does not tell a finger's tip from its last bone
+struct MatchConfidence {
+  // Matches; 2 to 5, 5 to 10; that are needed at least, with names for some of them and by form alone; set by hand.
+  std::size_t fewNamed = 3, fewByForm = 7;
+  // Confidences, 0 to 1: below kDoubtful they are listed as doubtful; set by hand.
+  double equalTrees = 0.5;    // of joints that are matched by their number in equal trees alone
+  double equalNames = 0.9;    // of names that are equal but for their case, separators and prefixes
+  double oneOfSeveral = 0.5;  // at most, of one palm joint, or pelvis, of several
+  double fingerByForm = 0.7;  // at most: form does not tell a finger's tip from its last bone
+};
+constexpr MatchConfidence kMatchConfidence;
 
 std::string plainName(std::string_view name) {
   if (const std::size_t space = name.find_last_of(":|"); space != std::string_view::npos) name.remove_prefix(space + 1);
@@ -111,7 +114,7 @@ class Matcher {
     map_.jointByJoint = standOtherwise() || map_.unlikeBodies || (areAnimals() && areFamily());
     if (!moves() && sameTree(source_, target_)) {
       map_ = {};
-      for (Index j = 0; j < target_.jointCount(); ++j) addOther(j, j, kEqualTrees, MatchedBy::kShape);
+      for (Index j = 0; j < target_.jointCount(); ++j) addOther(j, j, kMatchConfidence.equalTrees, MatchedBy::kShape);
       return std::move(map_);
     }
     matchNamesakes();
@@ -139,7 +142,7 @@ class Matcher {
     const Part *one = from_.anatomy.find(PartKind::kTrunk), *other = to_.anatomy.find(PartKind::kTrunk);
     const MatchedBy by = one && other ? evidenceOf(*one, *other) : MatchedBy::kShape;
     const bool isInferred = from_.pelvisIsInferred || to_.pelvisIsInferred;
-    const double trunkConfidence = isInferred ? std::min(confidence, kOneOfSeveral) : confidence;
+    const double trunkConfidence = isInferred ? std::min(confidence, kMatchConfidence.oneOfSeveral) : confidence;
     if (from_.pelvis && to_.pelvis) add(body_part::kPelvis, {*from_.pelvis}, {*to_.pelvis}, trunkConfidence, by);
     add(body_part::kTrunk, from_.trunk, to_.trunk, trunkConfidence, by);
     add(body_part::kNeck, from_.neck, to_.neck, confidence, by);
@@ -281,7 +284,7 @@ class Matcher {
       for (std::size_t i = begin; i < end; ++i) {
         piece.piece = static_cast<Index>(i);
         add(piece, {source.joints[i - source.firstPiece]}, {target.joints[i - target.firstPiece]},
-            by == MatchedBy::kShape ? std::min(confidence, kFingerByForm) : confidence, by);
+            by == MatchedBy::kShape ? std::min(confidence, kMatchConfidence.fingerByForm) : confidence, by);
       }
       return;
     }
@@ -317,7 +320,8 @@ class Matcher {
       piece.segment = segment;
       const bool isInferred =
           segment == Segment::kEnd && (isOneOfSeveral(sourceTree_, *source.part) || isOneOfSeveral(targetTree_, part));
-      add(piece, std::move(from), std::move(to), isInferred ? std::min(confidence, kOneOfSeveral) : confidence, by);
+      add(piece, std::move(from), std::move(to),
+          isInferred ? std::min(confidence, kMatchConfidence.oneOfSeveral) : confidence, by);
     }
   }
 
@@ -456,7 +460,7 @@ class Matcher {
       const std::optional<std::size_t> above = matchAbove(targetTree_, matchedTarget_, joint);
       if ((!above && !map_.jointByJoint) || above != matchAbove(sourceTree_, matchedSource_, found->second)) continue;
       const bool same = source_.joints[found->second].name == target_.joints[joint].name;
-      addOther(found->second, joint, same ? 1 : kEqualNames, MatchedBy::kName);
+      addOther(found->second, joint, same ? 1 : kMatchConfidence.equalNames, MatchedBy::kName);
     }
   }
 
@@ -470,7 +474,7 @@ class Matcher {
 
   // The body itself, and something that hangs on it: hips and a head move nothing.
   bool moves() const {
-    if (areLines_) return map_.matches.size() >= kFewNamed;
+    if (areLines_) return map_.matches.size() >= kMatchConfidence.fewNamed;
     const auto both = [&](PartKind kind) {
       return std::any_of(map_.matches.begin(), map_.matches.end(),
                          [&](const JointMatch& match) { return match.part.kind == kind; });
@@ -484,8 +488,9 @@ class Matcher {
     const auto named =
         static_cast<std::size_t>(std::count_if(map_.matches.begin(), map_.matches.end(),
                                                [](const JointMatch& match) { return match.by == MatchedBy::kName; }));
-    const bool mostlyNamed = named >= kFewNamed && 2 * named >= std::min(source_.jointCount(), target_.jointCount());
-    const bool hasForm = map_.matches.size() >= (named > 0 ? kFewNamed : kFewByForm);
+    const bool mostlyNamed =
+        named >= kMatchConfidence.fewNamed && 2 * named >= std::min(source_.jointCount(), target_.jointCount());
+    const bool hasForm = map_.matches.size() >= (named > 0 ? kMatchConfidence.fewNamed : kMatchConfidence.fewByForm);
     return map_.find(body_part::kPelvis) && (mostlyNamed || ((limbs || both(PartKind::kTail)) && hasForm)) &&
            standAlike;
   }

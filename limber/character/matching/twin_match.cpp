@@ -14,20 +14,23 @@ namespace limber {
 
 namespace {
 
-// Fraction of a bone, or of a hundredth of the skeleton for the shortest; 1e-3 to 0.05; between twins' bones; set by
-// hand.
-constexpr double kSameLength = 0.02;
-// Mean distance of joints laid on each other, in mean distances from their middle; 0.1 to 0.5; of twins; set by hand.
-constexpr double kMaxDeviation = 0.35;
-// The same, and of a bone; 1e-5 to 1e-2; candidates that differ by less are told apart by names; set by hand.
-constexpr double kAlike = 1e-3;
-// Fraction of a limb's reach; 1e-6 to 1e-4 (1e-3 before); by which its joints may be off to have been turned as a
-// whole. A tenth of what the motion may be off in the end (0.1 mm of a person); positions in files, in float, are exact
-// to a hundredth of it.
-constexpr double kRigid = 1e-5;
-// Second singular value over the first; 1e-10 to 1e-6; joints within 1e-4 of their length lie on one line; rounding
-// only.
-constexpr double kOnLine = 1e-8;
+struct TwinTolerances {
+  // Fraction of a bone, or of a hundredth of the skeleton for the shortest; 1e-3 to 0.05; between twins' bones; set by
+  // hand.
+  double sameLength = 0.02;
+  // Mean distance of joints laid on each other, in mean distances from their middle; 0.1 to 0.5; of twins; set by hand.
+  double maxDeviation = 0.35;
+  // The same, and of a bone; 1e-5 to 1e-2; candidates that differ by less are told apart by names; set by hand.
+  double alike = 1e-3;
+  // Fraction of a limb's reach; 1e-6 to 1e-4 (1e-3 before); by which its joints may be off to have been turned as a
+  // whole. A tenth of what the motion may be off in the end (0.1 mm of a person); positions in files, in float, are
+  // exact to a hundredth of it.
+  double rigid = 1e-5;
+  // Second singular value over the first; 1e-10 to 1e-6; joints within 1e-4 of their length lie on one line; rounding
+  // only.
+  double onLine = 1e-8;
+};
+constexpr TwinTolerances kTwinTolerances;
 
 // The rotation that brings `from` nearest to `to`, both about their origin (Kabsch 1976). What lies on one line does
 // not tell how it is twisted about that: the shortest.
@@ -35,7 +38,7 @@ Quat rotationBetween(const std::vector<Vec3>& from, const std::vector<Vec3>& to)
   Mat3 sum = Mat3::Zero();
   for (std::size_t i = 0; i < from.size(); ++i) sum += to[i] * from[i].transpose();
   const Eigen::JacobiSVD<Mat3> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  if (svd.singularValues()[1] <= kOnLine * svd.singularValues()[0]) {
+  if (svd.singularValues()[1] <= kTwinTolerances.onLine * svd.singularValues()[0]) {
     return shortestRotation(svd.matrixV().col(0), svd.matrixU().col(0));
   }
   Mat3 sign = Mat3::Identity();
@@ -65,21 +68,21 @@ class TwinMatcher {
     short_ = 0.01 * other / static_cast<double>(target_.jointCount());
 
     std::optional<Twins> best;
-    double least = kMaxDeviation, names = -1;
+    double least = kTwinTolerances.maxDeviation, names = -1;
     std::size_t most = 0;  // bones that are alike to the bit, but for limbs that rest otherwise
     for (const Quat& turn : turns()) {
       Twins twins{std::vector<Index>(target_.jointCount(), 0), turn, scale_};
       if (!layOn(twins)) continue;
-      if (distance(twins) > kAlike) {
+      if (distance(twins) > kTwinTolerances.alike) {
         const Quat near = turnOf(twins);
         if (bonesAlike(twins, near) > bonesAlike(twins, turn)) twins.turn = near;
         if (!layOn(twins)) continue;
       }
       const double off = distance(twins), common = namesInCommon(twins);
       const std::size_t alike = bonesAlike(twins, twins.turn);
-      const bool better =
-          alike > most || (alike == most && (off < least - kAlike || (off < least + kAlike && common > names)));
-      if (!better || off > kMaxDeviation) continue;
+      const bool better = alike > most || (alike == most && (off < least - kTwinTolerances.alike ||
+                                                             (off < least + kTwinTolerances.alike && common > names)));
+      if (!better || off > kTwinTolerances.maxDeviation) continue;
       most = alike;
       least = std::min(off, least);
       names = common;
@@ -185,7 +188,7 @@ class TwinMatcher {
           one -= from_[*sourceParent];
           other -= to_[*targetParent];
           const double length = scale_ * one.norm();
-          if (std::abs(length - other.norm()) > kSameLength * std::max(length, short_)) continue;
+          if (std::abs(length - other.norm()) > kTwinTolerances.sameLength * std::max(length, short_)) continue;
         }
         pairs.push_back({(scale_ * (turn * limbMiddle(sourceTree_, from_, s, sourceParent)) -
                           limbMiddle(targetTree_, to_, t, targetParent))
@@ -271,7 +274,7 @@ class TwinMatcher {
       if (!targetTree_.parent(j) || !sourceTree_.parent(own)) continue;
       const Vec3 bone = to_[j] - to_[*targetTree_.parent(j)];
       const Vec3 other = scale_ * (turn * (from_[own] - from_[*sourceTree_.parent(own)]));
-      alike += (bone - other).norm() < kAlike * std::max(bone.norm(), short_);
+      alike += (bone - other).norm() < kTwinTolerances.alike * std::max(bone.norm(), short_);
     }
     return alike;
   }
@@ -330,7 +333,7 @@ Pose poseAsTwin(const Skeleton& source, const Pose& sourcePose, const Skeleton& 
         off = std::max(off, (turn * is[i] - wanted[i]).norm());
         reach = std::max(reach, wanted[i].norm());
       }
-      return off <= kRigid * reach;
+      return off <= kTwinTolerances.rigid * reach;
     };
     collect(tree.subtree(joint));
     lies[joint] = fits(turns[joint]);

@@ -16,12 +16,15 @@ namespace {
 // half of the shared motions: hands on hips 24 -> 28 of 28, crossed arms 21 -> 28 of 30.
 constexpr TouchDistances kHands = {0.46, 0.8}, kHead = {0.33, 0.6}, kTrunk = {0.37, 0.53}, kThigh = {0.21, 0.29},
                          kForearm = {0.23, 0.46};
-// Arm lengths; 0.9 to kMaxStretch; from there on stretching softens; by jerk on the shared motions.
-constexpr double kSoftReach = 0.96;
-// By whole motions of boxing and bending, in which arms flipped:
-constexpr double kSoftFold = 0.45;  // arm lengths; 0.3 to 0.6; below it, and below the pose's own, folding softens
-constexpr double kFold = 0.6;       // fraction of that; 0.3 to 0.9; nearest of a hand to its shoulder: else elbows snap
-constexpr double kMaxTouch = 0.5;   // arm lengths; 0.2 to 1; displacement of a hand from its joint angles
+struct Reaching {
+  // Arm lengths; 0.9 to kMaxStretch; from there on stretching softens; by jerk on the shared motions.
+  double softReach = 0.96;
+  // By whole motions of boxing and bending, in which arms flipped:
+  double softFold = 0.45;  // arm lengths; 0.3 to 0.6; below it, and below the pose's own, folding softens
+  double fold = 0.6;       // fraction of that; 0.3 to 0.9; nearest of a hand to its shoulder: else elbows snap
+  double maxTouch = 0.5;   // arm lengths; 0.2 to 1; displacement of a hand from its joint angles
+};
+constexpr Reaching kReaching;
 
 // `wanted` beyond `edge`, but the slower the nearer it comes to `end`.
 double towards(double end, double edge, double wanted) {
@@ -108,14 +111,14 @@ Vec3 HandGoals::touchOf(const Arm& arm, const std::vector<Surface>& surfaces, co
 void HandGoals::softenReach(Arm& arm, const BodyFrame& target) const {
   const Vec3 shoulder = target.positions[arm.spec.upper], own = target.positions[arm.spec.end] - shoulder;
   const Vec3 displacement = arm.goal.position - shoulder;
-  const double far = std::max(own.norm(), kSoftReach * arm.spec.length),
-               near = std::min(own.norm(), kSoftFold * arm.spec.length);
+  const double far = std::max(own.norm(), kReaching.softReach * arm.spec.length),
+               near = std::min(own.norm(), kReaching.softFold * arm.spec.length);
   const double wanted = displacement.norm();
   if (wanted > far) {
     arm.goal.position = shoulder + towards(kMaxStretch * arm.spec.length, far, wanted) / wanted * displacement;
   } else if (wanted < near) {
     const Vec3 line = wanted > 0 ? displacement.normalized() : own.normalized();
-    arm.goal.position = shoulder + towards(kFold * near, near, wanted) * line;
+    arm.goal.position = shoulder + towards(kReaching.fold * near, near, wanted) * line;
   }
 }
 
@@ -143,7 +146,7 @@ void HandGoals::set(const BodyFrame& source, const BodyFrame& target, double sec
   }
   for (std::size_t a = 0; a < arms_.size(); ++a) {
     Sprung& follow = follows_[a];
-    follow.drawTo(atMost(touches[a], kMaxTouch * arms_[a].spec.length), kArmRate, seconds);
+    follow.drawTo(atMost(touches[a], kReaching.maxTouch * arms_[a].spec.length), kArmRate, seconds);
     if (follow.value.norm() < 1e-9 * setup_.targetHipHeight) continue;
     arms_[a].goal.position += follow.value;
     softenReach(arms_[a], target);

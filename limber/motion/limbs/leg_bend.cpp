@@ -10,10 +10,13 @@ namespace limber {
 namespace {
 
 // Set by hand, for a fox's clips on a cow and a wolf.
-constexpr double kStraight = 0.5;       // radians; 0.3 to 0.8; added to bends, squared: else nearly straight knees snap
-constexpr double kSoftStraight = 0.04;  // radians squared; 0.01 to 0.1; over which that ends without a kink
-constexpr double kSoftFold = 0.1;       // radians; 0.05 to 0.3; over which the bend comes to its most
-constexpr double kMaxWithHock = 2.8;    // radians; 2.4 to pi; of knee and hock together, a right angle and a bit each
+struct Bending {
+  double straight = 0.5;       // radians; 0.3 to 0.8; added to bends, squared: else nearly straight knees snap
+  double softStraight = 0.04;  // radians squared; 0.01 to 0.1; over which that ends without a kink
+  double softFold = 0.1;       // radians; 0.05 to 0.3; over which the bend comes to its most
+  double maxWithHock = 2.8;    // radians; 2.4 to pi; of knee and hock together, a right angle and a bit each
+};
+constexpr Bending kBending;
 
 struct Bones {
   double all = 0, longest = 0;
@@ -42,7 +45,7 @@ LegBend::Chain::Chain(const Skeleton& skeleton, const NeutralPose& neutral, cons
   if (leg.hock) {
     const Bones bones = bonesOf(skeleton, rest, leg);
     first = second = 0.5 * bones.all;
-    most = std::min(kMaxWithHock, bendAt(std::max(2 * bones.longest - bones.all, 0.0)));
+    most = std::min(kBending.maxWithHock, bendAt(std::max(2 * bones.longest - bones.all, 0.0)));
   }
   atRest = bend(neutral.positions);
 }
@@ -51,12 +54,13 @@ double LegBend::Chain::bendAt(double reach) const {
   const double cosine = (reach * reach - first * first - second * second) / (2 * first * second);
   const double angle = std::acos(std::clamp(cosine, -1.0, 1.0));
   const double squared = cosine < 1 ? angle * angle : 2 * (1 - cosine);  // without a kink, also of overstretched legs
-  return std::sqrt(softPositive(squared + kStraight * kStraight, kSoftStraight));
+  return std::sqrt(softPositive(squared + kBending.straight * kBending.straight, kBending.softStraight));
 }
 
 double LegBend::Chain::reachAt(double bend) const {
   const double least = std::max(bend, 0.0);
-  const double angle = std::sqrt(softPositive(least * least - kStraight * kStraight, kSoftStraight));
+  const double angle =
+      std::sqrt(softPositive(least * least - kBending.straight * kBending.straight, kBending.softStraight));
   return std::sqrt(first * first + second * second + 2 * first * second * std::cos(angle));
 }
 
@@ -69,7 +73,7 @@ LegBend::LegBend(const RetargetSetup& setup, const LegJoints& source, const LegJ
 
 double LegBend::reach(const BodyFrame& source) const {
   const double bend = source_.bend(source.positions) + target_.atRest - source_.atRest;
-  return target_.reachAt(target_.most - softPositive(target_.most - bend, kSoftFold));
+  return target_.reachAt(target_.most - softPositive(target_.most - bend, kBending.softFold));
 }
 
 }  // namespace limber

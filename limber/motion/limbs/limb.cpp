@@ -10,29 +10,33 @@ namespace limber {
 
 namespace {
 
-// Lengths of the line from hip to ankle; 0.002 to 0.03; a knee of an animal that is further off it tells to which side
-// it bends; set by hand.
-constexpr double kBentInRest = 0.01;
+// Of the legs of a kind of body.
+struct LegValues {
+  // Lengths of the line from hip to ankle; 0.002 to 0.03; a knee of an animal that is further off it tells to which
+  // side it bends; set by hand.
+  double bentInRest = 0.01;
 
-// Hip heights a second; 0.3 to 1, 0.2 to 0.8 of upright bodies (set on a dinosaur's clips on people); else set by hand
-// on farm animals' clips on each other; FootDrive::slipSpeed.
-constexpr double kSlipSpeed = 0.65, kUprightSlipSpeed = 0.4;
+  // Hip heights a second; 0.3 to 1, 0.2 to 0.8 of upright bodies (set on a dinosaur's clips on people); else set by
+  // hand on farm animals' clips on each other; FootDrive::slipSpeed.
+  double slipSpeed = 0.65, uprightSlipSpeed = 0.4;
 
-// Of upright bodies, BodySupport::carried upwards; fraction; 0 to 1; by jerk on all 528 shared pairs of a motion and a
-// person (0.7 before).
-constexpr double kCarriedUp = 0.5;
-// BodySupport::softStretch, hip heights; 0.005 to 0.03; by jerk on the shared people. Of legs at both ends of a body
-// and of foot-driven ones, some of which are far off and stretch more: 0.02 to 0.08; set on a dinosaur's clips on
-// people.
-constexpr double kSoftStretch = 0.015, kSoftFar = 0.04;
-// BodySupport::maxSink of hips or shoulders alone, hip heights; 0.05 to 0.3; before feet that cannot reach lift; set on
-// a fox's gallop on an alpaca, which reared without it.
-constexpr double kMaxSinkAtEnd = 0.15;
-// Fraction of LimbSpec::folded; 0.5 to 1; BodySupport::nearest of knees that follow joint angles; set by hand on boxing
-// and bending.
-constexpr double kKneesFold = 0.75;
-// BodySupport::nearLevel of the foot-driven legs of an upright body; 0.1 to 0.5; set on a dinosaur's clips on people.
-constexpr double kNearLevel = 0.3;
+  // Of upright bodies, BodySupport::carried upwards; fraction; 0 to 1; by jerk on all 528 shared pairs of a motion and
+  // a person (0.7 before).
+  double carriedUp = 0.5;
+  // BodySupport::softStretch, hip heights; 0.005 to 0.03; by jerk on the shared people. Of legs at both ends of a body
+  // and of foot-driven ones, some of which are far off and stretch more: 0.02 to 0.08; set on a dinosaur's clips on
+  // people.
+  double softStretch = 0.015, softFar = 0.04;
+  // BodySupport::maxSink of hips or shoulders alone, hip heights; 0.05 to 0.3; before feet that cannot reach lift; set
+  // on a fox's gallop on an alpaca, which reared without it.
+  double maxSinkAtEnd = 0.15;
+  // Fraction of LimbSpec::folded; 0.5 to 1; BodySupport::nearest of knees that follow joint angles; set by hand on
+  // boxing and bending.
+  double kneesFold = 0.75;
+  // BodySupport::nearLevel of the foot-driven legs of an upright body; 0.1 to 0.5; set on a dinosaur's clips on people.
+  double nearLevel = 0.3;
+};
+constexpr LegValues kLegValues;
 
 // How far the lower joint is off the line from the upper one to the end, in lengths of that line.
 Vec3 bendAtRest(const LegJoints& leg, const NeutralPose& neutral) {
@@ -91,17 +95,25 @@ std::optional<LegSpec> uprightLeg(const RetargetSetup& setup, const RootPosition
     leg.tip = toesOf(*setup.target, setup.map, MapSide::kTarget, side, setup.targetNeutral.restPositions);
   }
   measureFoot(setup, leg);
-  leg.support = {Vec3(1, kCarriedUp, 1), kSoftStretch, kMaxSink, false, true, kKneesFold * leg.folded, 0};
+  leg.support = {.carried = Vec3(1, kLegValues.carriedUp, 1),
+                 .softStretch = kLegValues.softStretch,
+                 .maxSink = kMaxSink,
+                 .risesAtOnce = true,
+                 .nearest = kLegValues.kneesFold * leg.folded};
   const JointMatch &shin = *setup.map.find(body_part::leg(side, Segment::kMiddle)),
                    &hips = *setup.map.find(body_part::kPelvis);
   if (!isBent(shin.source, leg.sourceEnd, setup.sourceNeutral.restPositions)) return leg;
   const LegJoints from = {leg.sourceUpper, shin.source.front(), leg.sourceEnd, {}, {}, {}};
   const LegJoints to = {leg.upper, leg.lower, leg.end, {}, {}, {}};
-  leg.drive = FootDrive{LegBend(setup, from, to), hips.source.back(),    true,
-                        leg.ankleGround,          leg.sourceAnkleGround, kUprightSlipSpeed};
+  leg.drive = {.bend = LegBend(setup, from, to),
+               .sourceBody = hips.source.back(),
+               .uprightBody = true,
+               .restHeight = leg.ankleGround,
+               .sourceRestHeight = leg.sourceAnkleGround,
+               .slipSpeed = kLegValues.uprightSlipSpeed};
   leg.support.carried.setZero();
   leg.support.nearest = leg.folded;
-  leg.support.nearLevel = kNearLevel;
+  leg.support.nearLevel = kLegValues.nearLevel;
   return leg;
 }
 
@@ -113,7 +125,7 @@ std::vector<LegSpec> uprightLegs(const RetargetSetup& setup, const RootPositione
   // One body follows all of them.
   if (std::any_of(legs.begin(), legs.end(), [](const LegSpec& leg) { return leg.drive.has_value(); })) {
     for (LegSpec& leg : legs) {
-      leg.support.softStretch = kSoftFar;
+      leg.support.softStretch = kLegValues.softFar;
       leg.support.sinksSoftly = true;
     }
   }
@@ -126,23 +138,22 @@ std::optional<LegSpec> legUnderTrunk(const RetargetSetup& setup, const RootPosit
   if (!limb) return std::nullopt;
   LegSpec leg = legOf(*limb);
   const Vec3 ahead = bendAtRest(found.target, setup.targetNeutral);
-  leg.kneeAhead = ahead.norm() > kBentInRest ? ahead.normalized() : Vec3(Vec3::UnitZ());
+  leg.kneeAhead = ahead.norm() > kLegValues.bentInRest ? ahead.normalized() : Vec3(Vec3::UnitZ());
   leg.hock = found.target.hock;
   leg.fore = trunk.tilts() && found.fore;
-  leg.ownBend = found.footDriven || bendAtRest(found.source, setup.sourceNeutral).dot(*leg.kneeAhead) < kBentInRest;
+  leg.ownBend =
+      found.footDriven || bendAtRest(found.source, setup.sourceNeutral).dot(*leg.kneeAhead) < kLegValues.bentInRest;
   leg.toes = found.target.toes;
   leg.sourceToes = found.source.toes;
   measureFoot(setup, leg);
-  const double maxSink = trunk.tilts() ? kMaxSinkAtEnd : kMaxSink;
-  leg.support = {Vec3::Ones(), kSoftFar, maxSink, trunk.tilts(), false, 0, 0};
+  const double maxSink = trunk.tilts() ? kLegValues.maxSinkAtEnd : kMaxSink;
+  leg.support = {.softStretch = kLegValues.softFar, .maxSink = maxSink, .sinksSoftly = trunk.tilts()};
   if (!found.footDriven) return leg;
-  const auto restHeight = [](const NeutralPose& neutral, Index joint) { return neutral.restPositions[joint].y(); };
-  leg.drive = FootDrive{LegBend(setup, found.source, found.target),
-                        sourceBodyOf(found, setup),
-                        false,
-                        restHeight(setup.targetNeutral, leg.end),
-                        restHeight(setup.sourceNeutral, leg.sourceEnd),
-                        kSlipSpeed};
+  leg.drive = {.bend = LegBend(setup, found.source, found.target),
+               .sourceBody = sourceBodyOf(found, setup),
+               .restHeight = setup.targetNeutral.restPositions[leg.end].y(),
+               .sourceRestHeight = setup.sourceNeutral.restPositions[leg.sourceEnd].y(),
+               .slipSpeed = kLegValues.slipSpeed};
   leg.support.carried.setZero();
   leg.support.risesAtOnce = true;
   if (!leg.hock) leg.support.nearest = leg.folded;  // hocks fold as well

@@ -14,38 +14,50 @@ namespace limber {
 
 namespace {
 
-// Hip heights; 0.5 to 1.5; how far a planted foot may be from its joint angles; by jerk on the shared motions (0.25 and
-// 0.5 before).
-constexpr double kFootSlack = 0.9;
-// 1/seconds; 10 to 60; of LimbState::changed; by jerk on all 528 shared pairs of a motion and a person.
-constexpr double kChangeRate = 25;
-constexpr double kRiseRate = 40;  // 1/seconds; 20 to 80; of an animal's pelvis, as feet let go; set by hand
+struct Following {
+  // Hip heights; 0.5 to 1.5; how far a planted foot may be from its joint angles; by jerk on the shared motions (0.25
+  // and 0.5 before).
+  double footSlack = 0.9;
+  // 1/seconds; 10 to 60; of LimbState::changed; by jerk on all 528 shared pairs of a motion and a person.
+  double changeRate = 25;
+  double riseRate = 40;  // 1/seconds; 20 to 80; of an animal's pelvis, as feet let go; set by hand
+};
+constexpr Following kFollowing;
 
-// Hip heights, where nothing else is said. A point that comes down slows within kSoftGround of the ground, and the
-// faster it falls within up to kMostSoft more: what it falls in kFallSeconds. By jerk on the shared pairs of a motion
-// and a person (at most 1.1 times the source's on 526 of 528).
-constexpr double kSoftGround = 0.006;  // 0.002 to 0.01
-constexpr double kMaxSoftness = 0.04;  // 0.02 to 0.08
-constexpr double kFallSeconds = 0.03;  // seconds; 0.01 to 0.06
-constexpr double kFallRate = 40;       // 1/seconds; 20 to 80; by which that speed is smoothed
-// Fractions of that softness that a planted foot loses; 0 to 1; the point that is pinned, and the other; by jerk on the
-// shared people.
-constexpr double kFirmPinned = 0.9, kFirmBeside = 0.2;
-// Hip heights of the source; 0.001 to 0.01; where its foot sinks below its resting height; set on a wolf's idle as a
-// horse, which trembled before.
-constexpr double kSoftLowered = 0.003;
-constexpr double kTipLies = 0.05;  // hip heights; 0.02 to 0.1; below it toes of the target alone lie down; set by hand
-// Of foot-driven legs; set by hand on farm animals' clips on each other, where nothing else is said.
-// Leg lengths; 0.01 to 0.06 lifted, 0.001 to 0.01 planted; before a leg is stretched.
-constexpr double kSoftLeg = 0.03, kSoftStanding = 0.003;
-// Squared cosine of half an angle; 0.25 to 0.75; a body that leans by more faces nowhere (0.5: 90 degrees); set by
-// hand.
-constexpr double kFaces = 0.5;
-constexpr double kSlipPower = 3;  // exponent; 2 to 4; of FootDrive::slipSpeed
+struct Landing {
+  // Hip heights, where nothing else is said. A point that comes down slows within softGround of the ground, and the
+  // faster it falls within up to maxSoftness more: what it falls in fallSeconds. By jerk on the shared pairs of a
+  // motion and a person (at most 1.1 times the source's on 526 of 528).
+  double softGround = 0.006;  // 0.002 to 0.01
+  double maxSoftness = 0.04;  // 0.02 to 0.08
+  double fallSeconds = 0.03;  // seconds; 0.01 to 0.06
+  double fallRate = 40;       // 1/seconds; 20 to 80; by which that speed is smoothed
+  // Fractions of that softness that a planted foot loses; 0 to 1; the point that is pinned, and the other; by jerk on
+  // the shared people.
+  double firmPinned = 0.9, firmBeside = 0.2;
+  // Hip heights of the source; 0.001 to 0.01; where its foot sinks below its resting height; set on a wolf's idle as a
+  // horse, which trembled before.
+  double softLowered = 0.003;
+  double tipLies = 0.05;  // hip heights; 0.02 to 0.1; below it toes of the target alone lie down; set by hand
+};
+constexpr Landing kLanding;
+struct Driving {
+  // Of foot-driven legs; set by hand on farm animals' clips on each other, where nothing else is said.
+  // Leg lengths; 0.01 to 0.06 lifted, 0.001 to 0.01 planted; before a leg is stretched.
+  double softLeg = 0.03, softStanding = 0.003;
+  // Squared cosine of half an angle; 0.25 to 0.75; a body that leans by more faces nowhere (0.5: 90 degrees); set by
+  // hand.
+  double faces = 0.5;
+  double slipPower = 3;  // exponent; 2 to 4; of FootDrive::slipSpeed
+};
+constexpr Driving kDriving;
 
-// Radians that toes point down; pi / 2 to pi, the first below the second; between them a sole comes to look up, and
-// toes are no longer levelled. The third: 0.02 to 0.2; over which levelling begins. Set by hand.
-constexpr double kSteep = 1.7, kSoleUp = 2.4, kSoftLevel = 0.05;
+struct Levelling {
+  // Radians that toes point down; pi / 2 to pi, the first below the second; between them a sole comes to look up, and
+  // toes are no longer levelled. The third: 0.02 to 0.2; over which levelling begins. Set by hand.
+  double steep = 1.7, soleUp = 2.4, softLevel = 0.05;
+};
+constexpr Levelling kLevelling;
 
 WatchedFoot watched(const LegSpec& leg) {
   return {leg.sourceEnd, leg.toes ? leg.sourceToes : std::nullopt, leg.sourceAnkleGround, leg.sourceToesGround};
@@ -118,7 +130,7 @@ Vec3 LimbGoals::turnedAsBody(const Vec3& displacement, const FootDrive& drive, c
   const Quat turn = turnOfBody(drive, source);
   const double size = turn.w() * turn.w() + turn.y() * turn.y();
   if (!(size > 0)) return Vec3::Zero();
-  return smoothStep(size / kFaces) * (Quat(turn.w(), 0, turn.y(), 0).normalized() * displacement);
+  return smoothStep(size / kDriving.faces) * (Quat(turn.w(), 0, turn.y(), 0).normalized() * displacement);
 }
 
 Quat LimbGoals::turnOfBody(const FootDrive& drive, const BodyFrame& source) const {
@@ -144,19 +156,19 @@ void LimbGoals::driveFoot(Leg& leg, FootState& state, const BodyFrame& source, c
   const Vec3 displacement = sourceEnd - state.sourceEnd;
   const double speed =
       seconds > 0 ? std::hypot(displacement.x(), displacement.z()) / (seconds * setup_.sourceHipHeight) : 0;
-  state.foot.slip = 1 / (1 + std::pow(drive.slipSpeed / speed, kSlipPower));
+  state.foot.slip = 1 / (1 + std::pow(drive.slipSpeed / speed, kDriving.slipPower));
   state.sourceEnd = sourceEnd;
 }
 
 // `down` is the downward displacement in this frame.
 void LimbGoals::followFall(double down, double seconds, Fall& fall) {
-  springTo(seconds > 0 ? std::max(down / seconds, 0.0) : 0.0, kFallRate, seconds, fall.speed, fall.change);
+  springTo(seconds > 0 ? std::max(down / seconds, 0.0) : 0.0, kLanding.fallRate, seconds, fall.speed, fall.change);
 }
 
 // Of what rests on its toes: sitting animals lay the whole foot down. As far as a joint in the source is below where it
 // is when standing, it may be in the target.
 double LimbGoals::loweredBy(const LegSpec& leg, double sourceGround, const Vec3& sourcePosition) const {
-  const double soft = kSoftLowered * setup_.sourceHipHeight;
+  const double soft = kLanding.softLowered * setup_.sourceHipHeight;
   return leg.plantigrade ? 0 : setup_.scale * softPositive(sourceGround - sourcePosition.y(), soft);
 }
 
@@ -182,7 +194,7 @@ void LimbGoals::setFeet(const BodyFrame& source, const BodyFrame& target, double
   const Quat turn = pelvis_.turnFor(legs_, target);
   for (std::size_t i = 0; i < legs_.size(); ++i) {
     const double change = pelvis_.changeOf(legs_[i], target, turn);
-    springTo(change, kChangeRate, seconds, legs_[i].state.changed, states_[i].changedSpeed);
+    springTo(change, kFollowing.changeRate, seconds, legs_[i].state.changed, states_[i].changedSpeed);
   }
   rise_ = nextRise(target, seconds);
 }
@@ -191,7 +203,7 @@ LimbGoals::Rise LimbGoals::nextRise(const BodyFrame& target, double seconds) con
   Rise rise = rise_;
   const double wanted = pelvis_.riseFor(legs_, target, pelvis_.turnFor(legs_, target));
   const bool atOnce = legs_.empty() || legs_.front().spec.support.risesAtOnce;
-  springTo(wanted, kRiseRate, atOnce ? 0 : seconds, rise.value, rise.speed);
+  springTo(wanted, kFollowing.riseRate, atOnce ? 0 : seconds, rise.value, rise.speed);
   return rise;
 }
 
@@ -217,7 +229,7 @@ void LimbGoals::setFoot(Leg& leg, const FootState& state, FootLock& lock, double
   FootLock::Frame foot = state.foot;
   foot.ankle += state.carried;
   foot.toes += state.carried;
-  leg.goal.position = lock.next(foot, seconds, kFootSlack * setup_.targetHipHeight);
+  leg.goal.position = lock.next(foot, seconds, kFollowing.footSlack * setup_.targetHipHeight);
   if (leg.spec.drive) leg.goal.position.y() = foot.ankle.y();
   leg.goal.turn = Eigen::AngleAxisd(lock.twist(), Vec3::UnitY());
   keepAboveGround(leg, foot, state);
@@ -227,8 +239,8 @@ void LimbGoals::setFoot(Leg& leg, const FootState& state, FootLock& lock, double
 void LimbGoals::keepAboveGround(Leg& leg, const FootLock::Frame& foot, const FootState& state) const {
   const double toesOver = foot.toes.y() - foot.ankle.y();
   const auto raise = [&](double under, const Fall& fall, double firm) {
-    const double height = setup_.targetHipHeight, ahead = kFallSeconds * std::max(fall.speed, 0.0) / height;
-    const double soft = kSoftGround + kMaxSoftness * ahead / (kMaxSoftness + ahead);
+    const double height = setup_.targetHipHeight, ahead = kLanding.fallSeconds * std::max(fall.speed, 0.0) / height;
+    const double soft = kLanding.softGround + kLanding.maxSoftness * ahead / (kLanding.maxSoftness + ahead);
     leg.goal.position.y() += softPositive(under, height * soft * (1 - firm * leg.state.contact.strength));
   };
   const auto raiseAnkle = [&](double firm) { raise(foot.ankleGround - leg.goal.position.y(), state.ankleFall, firm); };
@@ -236,11 +248,11 @@ void LimbGoals::keepAboveGround(Leg& leg, const FootLock::Frame& foot, const Foo
     if (leg.spec.toes) raise(foot.toesGround - toesOver - leg.goal.position.y(), state.toesFall, firm);
   };
   if (leg.state.contact.anchor == FootAnchor::kToes) {
-    raiseAnkle(kFirmBeside);
-    raiseToes(kFirmPinned);
+    raiseAnkle(kLanding.firmBeside);
+    raiseToes(kLanding.firmPinned);
   } else {
-    raiseToes(kFirmBeside);
-    raiseAnkle(kFirmPinned);
+    raiseToes(kLanding.firmBeside);
+    raiseAnkle(kLanding.firmPinned);
   }
 }
 
@@ -249,7 +261,7 @@ void LimbGoals::bendAsSource(Leg& leg, const BodyFrame& target) const {
   const double own = displacement.norm(), most = kMaxStretch * leg.spec.length;
   if (!leg.spec.drive || !(own > 0)) return;
   const double free = smoothStep(leg.state.lift / kLifted), length = own + free * (leg.state.bentReach - own);
-  const double soft = kSoftStanding + free * (kSoftLeg - kSoftStanding);
+  const double soft = kDriving.softStanding + free * (kDriving.softLeg - kDriving.softStanding);
   const double reached = most - softPositive(most - length, soft * leg.spec.length);
   const Vec3 change = (reached / own - 1) * displacement;
   const double down = -change.y(), room = heightOverGround(leg, target);
@@ -275,9 +287,10 @@ void LimbGoals::levelToes(const Leg& leg, BodyFrame& frame, Pose& target) const 
   const Quat turn = frame.rotations[*toes] * setup_.targetNeutral.rotations[*toes].conjugate();
   const double down = std::max(std::atan2(-(turn * Vec3::UnitZ()).y(), (turn * Vec3::UnitY()).y()), 0.0);
   const double over = (frame.positions[*toes].y() - spec.toesGround) / setup_.targetHipHeight;
-  const double lies = spec.toes ? leg.state.contact.strength : smoothStep(1 - over / kTipLies);
-  const double fraction = lies * std::clamp((kSoleUp - down) / (kSoleUp - kSteep), 0.0, 1.0);
-  const double up = fraction * down * down / (down + kSoftLevel);
+  const double lies = spec.toes ? leg.state.contact.strength : smoothStep(1 - over / kLanding.tipLies);
+  const double fraction =
+      lies * std::clamp((kLevelling.soleUp - down) / (kLevelling.soleUp - kLevelling.steep), 0.0, 1.0);
+  const double up = fraction * down * down / (down + kLevelling.softLevel);
   if (up < 1e-9) return;
   const BodyKinematics& kinematics = setup_.targetKinematics;
   const Quat level = Eigen::AngleAxisd(-up, turn * Vec3::UnitX()) * frame.rotations[*toes];

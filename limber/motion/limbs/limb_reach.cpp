@@ -11,14 +11,17 @@ namespace limber {
 
 namespace {
 
-// In leg lengths.
-// 0.005 to 0.02; added to a knee's bend forward; by jerk on the shared people, 0.02 before.
-constexpr double kKneesForward = 0.01;
-// 0.05 to 0.2; a knee's bend backward from which on it is meant; set by hand.
-constexpr double kOverstretched = 0.12;
-// 0.01 to 0.05; joints that are less off the line to the end bend little; by jerk of a horse's clips on a dog (7.1
-// times the source's without it, 1.8 with it).
-constexpr double kMinLever = 0.02;
+struct KneeBend {
+  // In leg lengths.
+  // 0.005 to 0.02; added to a knee's bend forward; by jerk on the shared people, 0.02 before.
+  double kneesForward = 0.01;
+  // 0.05 to 0.2; a knee's bend backward from which on it is meant; set by hand.
+  double overstretched = 0.12;
+  // 0.01 to 0.05; joints that are less off the line to the end bend little; by jerk of a horse's clips on a dog (7.1
+  // times the source's without it, 1.8 with it).
+  double minLever = 0.02;
+};
+constexpr KneeBend kKneeBend;
 
 // Of the sides of a triangle, opposite its third side.
 double hingeAngle(double one, double other, double opposite) {
@@ -35,7 +38,7 @@ Quat hockTurn(const LimbSpec& limb, const LimbShape& shape, const Vec3& there) {
   const double off = toStart.cross(line).norm(), kneeOff = shape.middle.cross(line).norm();
   const Vec3 normal = toStart.cross(toEnd);
   if (normal.norm() < 1e-9 * limb.length * limb.length) return Quat::Identity();
-  const double now = shape.end.norm(), longer = there.norm() - now, least = kMinLever * limb.length;
+  const double now = shape.end.norm(), longer = there.norm() - now, least = kKneeBend.minLever * limb.length;
   const double lever = off * off + kneeOff * kneeOff + least * least;
   const double angle = std::atan2(normal.norm(), toStart.dot(toEnd));
   double opens = off * longer / lever;
@@ -51,8 +54,8 @@ Vec3 jointsBend(const LimbSpec& limb, const LimbShape& shape) {
   const Vec3 forward = (shape.ahead - shape.ahead.dot(line) * line).normalized();
   const Vec3 bend = shape.middle - shape.middle.dot(line) * line;
   const double backward = std::max(-bend.dot(forward), 0.0);
-  const double little = std::max(1 - backward / (kOverstretched * limb.length), 0.0);
-  return bend + little * (backward + kKneesForward * limb.length) * forward;
+  const double little = std::max(1 - backward / (kKneeBend.overstretched * limb.length), 0.0);
+  return bend + little * (backward + kKneeBend.kneesForward * limb.length) * forward;
 }
 
 // As at rest, seen from the body: the leg's own upper joint turns past the direction to the end where the source's

@@ -11,13 +11,16 @@ namespace limber {
 
 namespace {
 
-// Standing heights a second; 8 to 20; a joint that is faster is cut; set by hand.
-constexpr double kCut = 12;
-// Root mean square third difference of a path, dimensionless; 1e-6 to 1e-4; less counts as it: rounding only.
-constexpr double kMinJerk = 2e-5;
-// Weight of squared third differences against squared changes; 1e8 to 1e11; more is lost in rounding (at 300 frames a
-// second); rounding only.
-constexpr double kSmoothest = 1e10;
+struct JerkLimits {
+  // Standing heights a second; 8 to 20; a joint that is faster is cut; set by hand.
+  double cut = 12;
+  // Root mean square third difference of a path, dimensionless; 1e-6 to 1e-4; less counts as it: rounding only.
+  double minJerk = 2e-5;
+  // Weight of squared third differences against squared changes; 1e8 to 1e11; more is lost in rounding (at 300 frames a
+  // second); rounding only.
+  double smoothest = 1e10;
+};
+constexpr JerkLimits kJerkLimits;
 
 // Each two matched joints of which one hangs on the other in both, and chains from end to end, as bones.
 std::vector<LimbPair> matchedBones(const RetargetSetup& setup) {
@@ -107,7 +110,7 @@ void BodyPaths::add(const std::vector<Vec3>& positions) {
 }
 
 bool isCut(const RetargetSetup& setup, const std::vector<Vec3>& before, const std::vector<Vec3>& now, double seconds) {
-  const double most = kCut * standingHeight(setup, MapSide::kSource) * seconds;
+  const double most = kJerkLimits.cut * standingHeight(setup, MapSide::kSource) * seconds;
   return std::any_of(setup.map.matches.begin(), setup.map.matches.end(), [&](const JointMatch& match) {
     return (now[match.source.front()] - before[match.source.front()]).norm() > most;
   });
@@ -136,12 +139,12 @@ double squaredJerk(const std::vector<Path>& paths, const std::vector<bool>& cuts
 }
 
 double jerkRatio(double source, double target, std::size_t frames) {
-  const double least = kMinJerk * kMinJerk * static_cast<double>(frames);
+  const double least = kJerkLimits.minJerk * kJerkLimits.minJerk * static_cast<double>(frames);
   return target > least || source > least ? std::sqrt(target / std::max(source, least)) : 1;
 }
 
 double smoothnessWeight(double seconds, double frameSeconds) {
-  return std::min(std::pow(seconds / frameSeconds, 6), kSmoothest);
+  return std::min(std::pow(seconds / frameSeconds, 6), kJerkLimits.smoothest);
 }
 
 }  // namespace limber

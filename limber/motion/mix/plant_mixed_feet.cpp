@@ -11,7 +11,7 @@ namespace limber {
 namespace {
 
 // Hip heights, and radians; 1e-7 to 1e-4; a frame with smaller changes stays as it is, bit for bit; below what is seen.
-constexpr double kUnseen = 1e-5, kUnseenTwist = 1e-5;
+constexpr double kUnseen = 1e-5;
 
 double levelLength(const Vec3& v) {
   return std::hypot(v.x(), v.z());
@@ -121,7 +121,7 @@ class FootPlanter {
   }
   bool isTwisted(std::size_t f) const {
     const std::vector<double>& turns = twists_[f - range_.begin];
-    return std::any_of(turns.begin(), turns.end(), [](double turn) { return std::abs(turn) > kUnseenTwist; });
+    return std::any_of(turns.begin(), turns.end(), [](double turn) { return std::abs(turn) > kUnseen; });
   }
 
   const MixBody& body_;

@@ -10,27 +10,19 @@ namespace limber {
 namespace {
 
 // All by the judge on half of the shared motions.
-// Weight of a planted foot's squared speed along the ground (hip heights a second); 1e3 to 1e6.
-constexpr double kHold = 1e5;
+// Weights against that of bones: the pelvis rises and sinks freely, so that legs keep their bend (0 to 0.1), and hardly
+// goes aside (1 to 100). A foot has no position of its own (0 to 0.1): its leg's bones tell where it is to be. A
+// planted one has a weight of its squared speed along the ground (hip heights a second; 1e3 to 1e6), and keeps its
+// height (1e3 to 1e6). Bounds are found in 3 to 20 rounds (set by hand).
+constexpr ChangeWeights kWeights = {
+    .pelvisLevel = 10, .pelvisUp = 0.02, .feet = 0.02, .bones = 1, .hold = 1e5, .rest = 3e4, .rounds = 8};
 // Hip heights; 0.05 to 0.3; over which it is seen how bones follow a foot, without the kink of nearly straight legs.
 constexpr double kBoneProbe = 0.2;
 constexpr double kAheadSeconds = 0.5;  // seconds; 0.3 to 2, several times kChangeSeconds; that a part sees of the next
 
-// ChangeWeights, against kBones = 1: the pelvis rises and sinks freely, so that legs keep their bend (0 to 0.1), and
-// hardly goes aside (1 to 100). A foot has no position of its own (0 to 0.1): its leg's bones tell where it is to be. A
-// planted one keeps its height (1e3 to 1e6). By the judge, too.
-constexpr double kPelvisLevel = 10, kPelvisUp = 0.02, kFeet = 0.02, kBones = 1, kRest = 3e4;
-constexpr int kRounds = 8;  // solves; 3 to 20; in which bounds are found; set by hand
-
 ChangeWeights weightsFor(double frameSeconds) {
-  ChangeWeights weights;
-  weights.pelvisLevel = kPelvisLevel;
-  weights.pelvisUp = kPelvisUp;
-  weights.feet = kFeet;
-  weights.bones = kBones;
-  weights.hold = kHold / (frameSeconds * frameSeconds);
-  weights.rest = kRest;
-  weights.rounds = kRounds;
+  ChangeWeights weights = kWeights;
+  weights.hold /= frameSeconds * frameSeconds;
   return weights;
 }
 

@@ -8,12 +8,15 @@ namespace limber {
 
 namespace {
 
-// Weight of what has to hold (planted feet, bounds, frames that do not change) against squared changes in hip heights;
-// 1e6 to 1e10, between what is seen and what is lost in rounding; set by hand.
-constexpr double kFirmWeight = 1e8;
-constexpr double kFirmUpTo = 1e6;    // weight of jerk; 1e4 to kFirmWeight; above it that weight grows; set by hand
-constexpr double kLoopWeight = 100;  // times that weight; 10 to 1000; that a loop closes; set by hand
-constexpr double kTooFar = 1e-5;     // hip heights; 1e-6 to 1e-4; by which bounds may be missed, below what is seen
+struct Weighting {
+  // Weight of what has to hold (planted feet, bounds, frames that do not change) against squared changes in hip
+  // heights; 1e6 to 1e10, between what is seen and what is lost in rounding; set by hand.
+  double firmWeight = 1e8;
+  double firmUpTo = 1e6;    // weight of jerk; 1e4 to firmWeight; above it that weight grows; set by hand
+  double loopWeight = 100;  // times that weight; 10 to 1000; that a loop closes; set by hand
+  double tooFar = 1e-5;     // hip heights; 1e-6 to 1e-4; by which bounds may be missed, below what is seen
+};
+constexpr Weighting kWeighting;
 
 double axisOf(const Vec3& v, std::size_t axis) {
   return v[static_cast<Eigen::Index>(axis)];
@@ -62,7 +65,7 @@ void LeastChanges::start(const ChangedMotion& now) {
 }
 
 Changes LeastChanges::find(double jerkWeight) {
-  const double firm = kFirmWeight * std::max(1.0, jerkWeight / kFirmUpTo);
+  const double firm = kWeighting.firmWeight * std::max(1.0, jerkWeight / kWeighting.firmUpTo);
   unbound_ = closeness_;
   unbound_.addScaled(jerk_, jerkWeight);
   holdPlanted(firm);
@@ -77,7 +80,7 @@ Changes LeastChanges::find(double jerkWeight) {
     if (!ends_.loops) continue;
     squares_ = unbound_;
     holdBounds(firm, about);
-    closeLoop(kLoopWeight * firm, changes);
+    closeLoop(kWeighting.loopWeight * firm, changes);
     changes = squares_.solve();
   } while (meetBounds(changes) && ++round < weights_.rounds);
   return changes;
@@ -235,8 +238,8 @@ bool LeastChanges::meetBounds(const Changes& changes) {
     for (std::size_t leg = 0; leg < layout_.legs(); ++leg) {
       const FootFrame& bounds = foot(f, leg);
       Pinned& pinned = pinned_[f * layout_.legs() + leg];
-      const bool under = changes[layout_.foot(f, leg) + 1] < bounds.lowest - kTooFar;
-      const bool beyond = legAt(changes, f, leg).norm() > bounds.most + kTooFar;
+      const bool under = changes[layout_.foot(f, leg) + 1] < bounds.lowest - kWeighting.tooFar;
+      const bool beyond = legAt(changes, f, leg).norm() > bounds.most + kWeighting.tooFar;
       more = more || (under && !pinned.up) || (beyond && !pinned.near);
       pinned.up = pinned.up || under;
       pinned.near = pinned.near || beyond;

@@ -13,19 +13,22 @@ namespace limber {
 
 namespace {
 
-// Times the source's jerk; 1 to 1.1; set just below 1.1, which every shared pair of a motion and a person keeps to.
-constexpr double kJerkLimit = 1.08;
-// Bone lengths; 0.005 to 0.05; between a bone's directions in the first and the last frame of a loop; set by hand.
-constexpr double kLoops = 0.02;
-// Jerk counts as for changes that come and go in that time: the shortest (seconds; 0.003 to 0.02), each kLonger times
-// the one before (1.05 to 1.5) until the motion is smooth, and up to so many frames (10 to 40): longer ones leave sums
-// whose weights are lost in rounding. Set by hand.
-constexpr double kShortest = 0.007, kLonger = 1.2, kMaxFrames = 30;
-// Hip heights; 0.05 to 0.3; of any change; by the judge on half of the shared motions (0.3 before: flattened what is
-// meant).
-constexpr double kFurthest = 0.15;
-constexpr double kProbe = 1e-4;  // hip heights; 1e-6 to 1e-3; to each side, for the slopes of bones; rounding only
-constexpr int kHalvings = 4;     // 2 to 8; of a step that made the motion rougher; set by hand
+struct Smoothing {
+  // Times the source's jerk; 1 to 1.1; set just below 1.1, which every shared pair of a motion and a person keeps to.
+  double jerkLimit = 1.08;
+  // Bone lengths; 0.005 to 0.05; between a bone's directions in the first and the last frame of a loop; set by hand.
+  double loops = 0.02;
+  // Jerk counts as for changes that come and go in that time: the shortest (seconds; 0.003 to 0.02), each longer times
+  // the one before (1.05 to 1.5) until the motion is smooth, and up to so many frames (10 to 40): longer ones leave
+  // sums whose weights are lost in rounding. Set by hand.
+  double shortest = 0.007, longer = 1.2, maxFrames = 30;
+  // Hip heights; 0.05 to 0.3; of any change; by the judge on half of the shared motions (0.3 before: flattened what is
+  // meant).
+  double furthest = 0.15;
+  double probe = 1e-4;  // hip heights; 1e-6 to 1e-3; to each side, for the slopes of bones; rounding only
+  int halvings = 4;     // 2 to 8; of a step that made the motion rougher; set by hand
+};
+constexpr Smoothing kSmoothing;
 
 class MotionSmoother {
  public:
@@ -47,7 +50,7 @@ class MotionSmoother {
       const std::size_t end = (i + 1) * frames / parts;
       begin_ = i * frames / parts;
       layout_ = moved_.layoutOf(end - begin_);
-      if (partsRatio() <= kJerkLimit) continue;
+      if (partsRatio() <= kSmoothing.jerkLimit) continue;
       const bool closes = loops_ && parts > 1;
       smoothPart({i > 0 || closes, i + 1 < parts || closes, loops_ && parts == 1});
     }
@@ -65,7 +68,7 @@ class MotionSmoother {
     }
     sourcePaths_ = body.paths();
     loops_ = std::all_of(sourcePaths_.begin() + 1, sourcePaths_.end(),
-                         [](const Path& path) { return (path.back() - path.front()).norm() < kLoops; });
+                         [](const Path& path) { return (path.back() - path.front()).norm() < kSmoothing.loops; });
   }
 
   // What has to hold for the feet of the whole motion.
@@ -131,12 +134,12 @@ class MotionSmoother {
     const double before = ratio(now_.paths);
     if (!ends.startsJoined && !ends.endsJoined) solveAll();
     double rough = ratio(now_.paths);
-    const double longest = kMaxFrames * source_.frameSeconds;
+    const double longest = kSmoothing.maxFrames * source_.frameSeconds;
     Step step = Step::kTaken;
-    for (double seconds = kShortest; seconds < longest && rough > kJerkLimit && step != Step::kTooFar;
-         seconds *= kLonger) {
+    for (double seconds = kSmoothing.shortest;
+         seconds < longest && rough > kSmoothing.jerkLimit && step != Step::kTooFar; seconds *= kSmoothing.longer) {
       if (step == Step::kTaken) {
-        moved_.findSlopes(layout_, kProbe, now_);
+        moved_.findSlopes(layout_, kSmoothing.probe, now_);
         least.start(now_);
       }
       step = goTowards(least.find(smoothnessWeight(seconds, source_.frameSeconds)), rough);
@@ -172,10 +175,10 @@ class MotionSmoother {
   Step goTowards(const Changes& aim, double& rough) {
     double fraction = 1;
     bool isNear = false;
-    for (int i = 0; i < kHalvings; ++i, fraction /= 2) {
+    for (int i = 0; i < kSmoothing.halvings; ++i, fraction /= 2) {
       Changes trial = now_.changes;
       for (std::size_t k = 0; k < trial.size(); ++k) trial[k] += fraction * (aim[k] - trial[k]);
-      isNear = furthest(trial) <= kFurthest;
+      isNear = furthest(trial) <= kSmoothing.furthest;
       if (!isNear) continue;
       if (!moved_.follow(layout_, trial, feetHere_, trialPaths_)) continue;
       const double now = ratio(trialPaths_);

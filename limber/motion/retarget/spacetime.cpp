@@ -23,10 +23,6 @@ namespace {
 constexpr double kFootDrivenSeconds = 0.13, kHandSeconds = 0.12;
 constexpr double kFootDrivenRest = 0.1;  // fraction; 0 to 1; how firmly a foot-driven foot keeps its height; likewise
 
-Vec3 level(const Vec3& v) {
-  return {v.x(), 0, v.z()};
-}
-
 using Goals = std::vector<CurveGoal>;
 using Goals3 = std::array<Goals, 3>;
 
@@ -148,7 +144,7 @@ class Spacetime {
       Goals twist = noGoals();
       for (std::size_t f = 1; f < frames(); ++f) {
         if (!contacts_->at(f, i).flat || !contacts_->at(f - 1, i).flat) continue;
-        const Vec3 from = level(foot[f - 1].roll), to = level(foot[f].roll);
+        const Vec3 from = alongGround(foot[f - 1].roll), to = alongGround(foot[f].roll);
         twist[f].step = -std::atan2(from.cross(to).y(), from.dot(to));
         twist[f].stepWeight = planting::kTwistHold * contacts_->firmness(f, i);
       }

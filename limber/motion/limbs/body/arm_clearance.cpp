@@ -14,9 +14,12 @@ namespace limber {
 namespace {
 
 // By the judge on half of the shared motions: surface inside the body 1.04 -> 0.89 times that of `aligned`.
-constexpr double kYieldDistance = 0.01;  // hip heights; 0.003 to 0.03; depth over which the swing begins without a kink
-constexpr double kMaxSwing = 0.7;        // radians; 0.3 to 1.2; of one bone
-constexpr double kFlesh = 0.7;           // fraction of an arm's mean radius; 0 to 1; that has to stay outside
+struct Swinging {
+  double yieldDistance = 0.01;  // hip heights; 0.003 to 0.03; depth over which the swing begins without a kink
+  double maxSwing = 0.7;        // radians; 0.3 to 1.2; of one bone
+  double flesh = 0.7;           // fraction of an arm's mean radius; 0 to 1; that has to stay outside
+};
+constexpr Swinging kSwinging;
 
 bool isBody(PartKind kind) {
   return kind == PartKind::kTrunk || kind == PartKind::kNeck || kind == PartKind::kHead || kind == PartKind::kLeg;
@@ -45,7 +48,7 @@ ArmClearance::ArmClearance(const RetargetSetup& setup, const RootPositioner& roo
   if (body_.empty()) arms_.clear();
   for (Arm& arm : arms_) {
     for (std::size_t i = 0; i < kAlong.size(); ++i) {
-      arm.thick[i] = kFlesh * thick[kAlong[i] > 1 ? arm.limb.end : arm.limb.lower];
+      arm.thick[i] = kSwinging.flesh * thick[kAlong[i] > 1 ? arm.limb.end : arm.limb.lower];
       arm.atRest[i] = std::max(depthAt(positionOf(arm.limb, kAlong[i], rest), rest).depth + arm.thick[i], 0.0);
     }
   }
@@ -69,7 +72,7 @@ Vec3 ArmClearance::displacementOutAt(const Arm& arm, std::size_t probe, const Bo
   const SkinTube::Depth found = depthAt(positionOf(arm.limb, kAlong[probe], frame), frame);
   const double depth = found.depth + arm.thick[probe] - arm.atRest[probe];
   if (!(depth > 0)) return Vec3::Zero();
-  return depth * depth / (depth + kYieldDistance * setup_.targetHipHeight) * found.out;
+  return depth * depth / (depth + kSwinging.yieldDistance * setup_.targetHipHeight) * found.out;
 }
 
 Vec3 ArmClearance::displacementOut(std::size_t arm, Bone bone, const BodyFrame& frame) const {
@@ -89,7 +92,7 @@ void ArmClearance::swing(std::size_t arm, Bone bone, const Vec3& displacement, B
   const Vec3 from = frame.positions[lower] - frame.positions[upper];
   if (displacement.norm() < 1e-9 * from.norm()) return;
   Eigen::AngleAxisd turn(shortestRotation(from, from + displacement));
-  turn.angle() = kMaxSwing * std::tanh(turn.angle() / kMaxSwing);
+  turn.angle() = kSwinging.maxSwing * std::tanh(turn.angle() / kSwinging.maxSwing);
   reach_.turnEnd(upper, Quat(turn) * frame.rotations[upper], frame, target);
 }
 

@@ -11,9 +11,12 @@ namespace limber {
 namespace {
 
 // In hip heights of the target; set by hand on a dog that falls over as a horse (it lay 13 cm too deep before).
-constexpr double kLies = 0.2;   // 0.1 to 0.3; a joint lower than that stays as high as the source's, scaled
-constexpr double kSoft = 0.04;  // 0.02 to 0.1; over which that begins, and joints take over, without a kink
-constexpr double kMax = 2;      // 1 to 20; lacks above it count alike, so that exp() stays finite
+struct Lifting {
+  double lies = 0.2;   // 0.1 to 0.3; a joint lower than that stays as high as the source's, scaled
+  double soft = 0.04;  // 0.02 to 0.1; over which that begins, and joints take over, without a kink
+  double max = 2;      // 1 to 20; lacks above it count alike, so that exp() stays finite
+};
+constexpr Lifting kLifting;
 
 }  // namespace
 
@@ -39,10 +42,10 @@ double BodyLift::operator()(const BodyFrame& source, const BodyFrame& target) co
   double sum = 0, weights = 0;
   for (const Pair& pair : body_) {
     const double over = setup_.scale * (source.positions[pair.source].y() - setup_.sourceGround) / height;
-    const double wanted = kLies - softPositive(kLies - over, kSoft);
+    const double wanted = kLifting.lies - softPositive(kLifting.lies - over, kLifting.soft);
     const double is = (target.positions[pair.target].y() - setup_.targetGround) / height;
-    const double lacks = softPositive(wanted - is, kSoft);
-    const double weight = std::exp(std::min(lacks, kMax) / kSoft);
+    const double lacks = softPositive(wanted - is, kLifting.soft);
+    const double weight = std::exp(std::min(lacks, kLifting.max) / kLifting.soft);
     sum += weight * lacks;
     weights += weight;
   }

@@ -10,32 +10,31 @@ namespace limber {
 
 namespace {
 
-// Exponent; 1 to 2; of the hips' widths, by which the rotations of wider hips are less; set by hand.
-constexpr double kWidthPower = 1.5;
+struct PelvisValues {
+  // Exponent; 1 to 2; of the hips' widths, by which the rotations of wider hips are less; set by hand.
+  double widthPower = 1.5;
 
-// In hip heights of the target.
-constexpr double kSoftChange = 0.004;  // 0.002 to 0.01; displacement of a foot that counts half; by jerk on people
-// 0.05 to 0.2; by which foot-driven legs count e times as much if they want the body lower; set by hand on farm
-// animals.
-constexpr double kSoftBend = 0.1;
-constexpr double kStanceBelow = 0.45;  // LimbState::lift; 0.3 to kLifted; their bend no longer counts; set by hand
-constexpr double kSoftFold = 0.02;     // 0.01 to 0.05; before a leg folds wholly; set by hand
+  // In hip heights of the target.
+  double softChange = 0.004;  // 0.002 to 0.01; displacement of a foot that counts half; by jerk on people
+  // 0.05 to 0.2; by which foot-driven legs count e times as much if they want the body lower; set by hand on farm
+  // animals.
+  double softBend = 0.1;
+  double stanceBelow = 0.45;  // LimbState::lift; 0.3 to kLifted; their bend no longer counts; set by hand
+  double softFold = 0.02;     // 0.01 to 0.05; before a leg folds wholly; set by hand
 
-constexpr double kStay = 0.5;  // legs; 0.1 to 1; that want the body to stay, against foot-driven ones; set by hand
-// Fraction; 0.5 to 1; of what the bends of legs at both ends want these to move apart; at 1 a fox that gallops as an
-// alpaca reared.
-constexpr double kApart = 0.75;
-// Fraction of the distance to which a leg folds; 0.2 to 1; how far below its hip the pose has a foot that wholly keeps
-// the body above it (less up to the hip's level); on handstands, kicks and raised legs: bones off by 14 degrees, not
-// 180.
-constexpr double kClearlyBelow = 0.5;
-// Stiffness against rotation by planted legs, leg lengths: 0.05 to 0.5 both, more on one leg; its bound, radians: 0.4
-// to 1.2. By jerk on toys with wide hips (3.3 -> 1.6 times the source's at worst).
-constexpr double kStiffOnTwo = 0.15, kStiffOnOne = 0.3, kMaxTurn = 0.8;
-
-Vec3 level(const Vec3& v) {
-  return {v.x(), 0, v.z()};
-}
+  double stay = 0.5;  // legs; 0.1 to 1; that want the body to stay, against foot-driven ones; set by hand
+  // Fraction; 0.5 to 1; of what the bends of legs at both ends want these to move apart; at 1 a fox that gallops as an
+  // alpaca reared.
+  double apart = 0.75;
+  // Fraction of the distance to which a leg folds; 0.2 to 1; how far below its hip the pose has a foot that wholly
+  // keeps the body above it (less up to the hip's level); on handstands, kicks and raised legs: bones off by 14
+  // degrees, not 180.
+  double clearlyBelow = 0.5;
+  // Stiffness against rotation by planted legs, leg lengths: 0.05 to 0.5 both, more on one leg; its bound, radians: 0.4
+  // to 1.2. By jerk on toys with wide hips (3.3 -> 1.6 times the source's at worst).
+  double stiffOnTwo = 0.15, stiffOnOne = 0.3, maxTurn = 0.8;
+};
+constexpr PelvisValues kValues;
 
 // x where it is small, at most `most` in either direction.
 double saturated(double x, double most) {
@@ -64,7 +63,7 @@ Pelvis::Pelvis(const RetargetSetup& setup, const RootPositioner& root)
   const double wide = hipWidth(setup.targetNeutral, leftHip_, rightHip_) / setup.targetHipHeight;
   const double source =
       hipWidth(setup.sourceNeutral, left.source.front(), right.source.front()) / setup.sourceHipHeight;
-  if (source > 0 && wide > source) hipTurns_ = std::pow(source / wide, kWidthPower);
+  if (source > 0 && wide > source) hipTurns_ = std::pow(source / wide, kValues.widthPower);
   if (const JointMatch* trunk = setup.map.find(body_part::kTrunk)) trunk_ = trunk->target.back();
 }
 
@@ -72,11 +71,11 @@ void Pelvis::levelHips(Pose& target, BodyFrame& frame) const {
   if (hipTurns_ == 1) return;
   const NeutralPose& neutral = setup_.targetNeutral;
   const Vec3 line = (frame.positions[leftHip_] - frame.positions[rightHip_]).normalized();
-  Vec3 levelled = level(line);
+  Vec3 levelled = alongGround(line);
   if (trunk_) {
     const Vec3 restDirection = (neutral.positions[leftHip_] - neutral.positions[rightHip_]).normalized();
-    levelled =
-        0.5 * (levelled + level(frame.rotations[*trunk_] * neutral.rotations[*trunk_].conjugate() * restDirection));
+    levelled = 0.5 * (levelled +
+                      alongGround(frame.rotations[*trunk_] * neutral.rotations[*trunk_].conjugate() * restDirection));
   }
   levelled += (1 - levelled.norm()) * line;
   const Vec3 wanted = (hipTurns_ * line + (1 - hipTurns_) * levelled).normalized();
@@ -96,7 +95,7 @@ Pelvis::Move Pelvis::moveFor(std::span<const Leg> legs, const BodyFrame& frame, 
 Pelvis::Move Pelvis::moveOfEnds(std::span<const Leg> hind, std::span<const Leg> fore, const BodyFrame& frame) const {
   const Quat none = Quat::Identity();
   const double hindRise = riseFor(hind, frame, none), foreRise = riseFor(fore, frame, none);
-  const double apart = 0.5 * (1 - kApart) * (foreRise - hindRise);
+  const double apart = 0.5 * (1 - kValues.apart) * (foreRise - hindRise);
   const double up = shiftFor(hind, frame, none, hindRise + apart);
   return {TrunkTilt::turnFor(shiftFor(fore, frame, none, foreRise - apart) - up, tilt_.trunkOf(frame)), up};
 }
@@ -127,12 +126,12 @@ Quat Pelvis::turnFor(std::span<const Leg> legs, const BodyFrame& frame) const {
              lackRight = right.goal.position - frame.positions[right.spec.end];
   const double both = left.state.contact.strength * right.state.contact.strength,
                length = 0.5 * (left.spec.length + right.spec.length);
-  const double onTwo = kStiffOnTwo * length, onOne = kStiffOnOne * length;
+  const double onTwo = kValues.stiffOnTwo * length, onOne = kValues.stiffOnOne * length;
   Vec3 turn = 0.5 * both / (toHip.squaredNorm() + onTwo * onTwo) * toHip.cross(lackLeft - lackRight);
   const Vec3 alone =
       (left.state.contact.strength - both) * lackLeft - (right.state.contact.strength - both) * lackRight;
   turn.y() += toHip.cross(alone).y() / (toHip.squaredNorm() + onOne * onOne);
-  return fromRotationVector(turn / std::sqrt(1 + turn.squaredNorm() / (kMaxTurn * kMaxTurn)));
+  return fromRotationVector(turn / std::sqrt(1 + turn.squaredNorm() / (kValues.maxTurn * kValues.maxTurn)));
 }
 
 // The rise of the pelvis with which every planted leg would be as long as its joint angles make it: the weighted mean
@@ -157,14 +156,14 @@ double Pelvis::riseFor(std::span<const Leg> legs, const BodyFrame& frame, const 
 // These legs' joint angles have the foot elsewhere: legs in stance bend as the source's do. A mean of the rises,
 // without a kink where another leg takes over.
 double Pelvis::footDrivenOffset(std::span<const Leg> legs, const BodyFrame& frame) const {
-  const double soft = kSoftBend * setup_.targetHipHeight;
-  double sum = kStay, weights = kStay;
+  const double soft = kValues.softBend * setup_.targetHipHeight;
+  double sum = kValues.stay, weights = kValues.stay;
   for (const Leg& leg : legs) {
     if (!leg.spec.drive) continue;
     const Vec3 displacement = leg.goal.position - frame.positions[leg.spec.upper];
     const double reach = leg.state.bentReach, across = std::hypot(displacement.x(), displacement.z());
     if (across >= reach) continue;
-    const double weight = leg.state.upright * smoothStep(1 - leg.state.lift / kStanceBelow) *
+    const double weight = leg.state.upright * smoothStep(1 - leg.state.lift / kValues.stanceBelow) *
                           (1 - across * across / (reach * reach)) * steepness(leg.spec.support, across, reach);
     const double up = displacement.y() + std::sqrt(reach * reach - across * across);
     sum += weight * std::exp(-saturated(up, kMaxSink * setup_.targetHipHeight) / soft);
@@ -183,7 +182,7 @@ double Pelvis::changeOf(const Leg& leg, const BodyFrame& frame, const Quat& turn
   if (leg.spec.drive) return 1;
   const double change =
       (leg.goal.position - frame.positions[leg.spec.end] - hipDisplacement({turn, 0}, leg.spec, frame)).norm();
-  return change / (change + kSoftChange * setup_.targetHipHeight);
+  return change / (change + kValues.softChange * setup_.targetHipHeight);
 }
 
 double Pelvis::shiftFor(std::span<const Leg> legs, const BodyFrame& frame, const Quat& turn, double rise) const {
@@ -222,8 +221,8 @@ double Pelvis::raiseFor(std::span<const Leg> legs, const BodyFrame& frame, doubl
     const double across = std::hypot(displacement.x(), displacement.z());
     if (across >= least) continue;
     const double lacks = std::sqrt(least * least - across * across) + displacement.y();
-    const double below = smoothStep(-own.y() / (kClearlyBelow * least));
-    const double needed = below * followed(state) * softPositive(lacks, kSoftFold * setup_.targetHipHeight);
+    const double below = smoothStep(-own.y() / (kValues.clearlyBelow * least));
+    const double needed = below * followed(state) * softPositive(lacks, kValues.softFold * setup_.targetHipHeight);
     sum += needed * needed * needed * needed;
   }
   return std::sqrt(std::sqrt(sum));

@@ -10,11 +10,15 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kMinSamples = 12;  // samples; 4 to 60; that a joint needs for a tube; set by hand
-// Sectors; 0 to 1, but no simple fraction; the skin of a limb that was made regular lies on no edge between two, where
-// the last bit of an angle, which compilers' libraries give differently, would tell to which it belongs; rounding only.
-constexpr double kOffEdges = 0.13;
-constexpr double kOutermost = 0.9;  // fraction; 0.5 to 1; of the samples of one side within its radius; set by hand
+struct TubeSamples {
+  std::size_t minSamples = 12;  // samples; 4 to 60; that a joint needs for a tube; set by hand
+  // Sectors; 0 to 1, but no simple fraction; the skin of a limb that was made regular lies on no edge between two,
+  // where the last bit of an angle, which compilers' libraries give differently, would tell to which it belongs;
+  // rounding only.
+  double offEdges = 0.13;
+  double outermost = 0.9;  // fraction; 0.5 to 1; of the samples of one side within its radius; set by hand
+};
+constexpr TubeSamples kTubeSamples;
 
 }  // namespace
 
@@ -26,7 +30,7 @@ std::optional<SkinTube> SkinTube::about(Index joint, const BodySkin& skin) {
     positions.push_back(skin.positions[i]);
     middle += skin.positions[i];
   }
-  if (positions.size() < kMinSamples) return std::nullopt;
+  if (positions.size() < kTubeSamples.minSamples) return std::nullopt;
   middle /= static_cast<double>(positions.size());
   if (!(middle.norm() > 0)) return std::nullopt;
   SkinTube tube;
@@ -52,7 +56,8 @@ std::optional<SkinTube> SkinTube::about(Index joint, const BodySkin& skin) {
     std::vector<double>& radii = found[cell];
     if (radii.empty()) continue;
     std::sort(radii.begin(), radii.end());
-    tube.radius_[cell] = radii[static_cast<std::size_t>(kOutermost * static_cast<double>(radii.size() - 1))];
+    tube.radius_[cell] =
+        radii[static_cast<std::size_t>(kTubeSamples.outermost * static_cast<double>(radii.size() - 1))];
   }
   // Where there is no skin, as much as beside it.
   for (int pass = 0; pass < kSectors; ++pass) {
@@ -76,7 +81,7 @@ std::optional<SkinTube> SkinTube::about(Index joint, const BodySkin& skin) {
 }
 
 double SkinTube::sectorAt(double x, double z) {
-  return kSectors * (std::atan2(z, x) / (2 * kPi) + 1) + kOffEdges;
+  return kSectors * (std::atan2(z, x) / (2 * kPi) + 1) + kTubeSamples.offEdges;
 }
 
 double SkinTube::radiusAt(double along, double sector) const {

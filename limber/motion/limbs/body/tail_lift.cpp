@@ -11,14 +11,13 @@ namespace limber {
 namespace {
 
 // Set by hand on a cat, whose tail is longer than its legs.
-constexpr double kClearance = 0.03;  // hip heights; 0 to 0.1; between the tail's joints and the ground
-constexpr double kSoft = 0.05;       // radians; 0.02 to 0.2; over which the lift begins without a kink
-constexpr double kBack = 0.1;        // fraction of its length; 0.02 to 0.3; of its direction at rest in its heading
-constexpr double kFine = 0.1;        // radians; 0.03 to 0.3; width of the soft maximum over the tail's joints
-
-Vec3 level(const Vec3& v) {
-  return {v.x(), 0, v.z()};
-}
+struct TailValues {
+  double clearance = 0.03;  // hip heights; 0 to 0.1; between the tail's joints and the ground
+  double soft = 0.05;       // radians; 0.02 to 0.2; over which the lift begins without a kink
+  double back = 0.1;        // fraction of its length; 0.02 to 0.3; of its direction at rest in its heading
+  double fine = 0.1;        // radians; 0.03 to 0.3; width of the soft maximum over the tail's joints
+};
+constexpr TailValues kTailValues;
 
 }  // namespace
 
@@ -29,15 +28,16 @@ TailLift::TailLift(const RetargetSetup& setup, const RootPositioner& root)
 
 double TailLift::needed(const BodyFrame& frame) const {
   const Vec3 base = frame.positions[tail_.front()];
-  const double floor = setup_.targetGround + kClearance * setup_.targetHipHeight;
+  const double floor = setup_.targetGround + kTailValues.clearance * setup_.targetHipHeight;
   double sum = 0, weights = 0;
   for (auto joint = tail_.begin() + 1; joint != tail_.end(); ++joint) {
     const Vec3 displacement = frame.positions[*joint] - base;
     const double length = displacement.norm();
     if (!(length > 0)) continue;
     const double least = std::asin(std::clamp((floor - base.y()) / length, -1.0, 1.0));
-    const double up = softPositive(least - std::asin(std::clamp(displacement.y() / length, -1.0, 1.0)), kSoft);
-    const double weight = std::exp(up / kFine);
+    const double up =
+        softPositive(least - std::asin(std::clamp(displacement.y() / length, -1.0, 1.0)), kTailValues.soft);
+    const double weight = std::exp(up / kTailValues.fine);
     sum += weight * up;
     weights += weight;
   }
@@ -50,7 +50,7 @@ Vec3 TailLift::heading(const BodyFrame& frame) const {
   const Index hips = *setup_.target->joints[tail_.front()].parent;
   const Vec3 atRest = neutral.positions[tail_.back()] - neutral.positions[tail_.front()];
   const Vec3 back = frame.rotations[hips] * neutral.rotations[hips].conjugate() * atRest;
-  return level(frame.positions[tail_.back()] - frame.positions[tail_.front()] + kBack * back);
+  return alongGround(frame.positions[tail_.back()] - frame.positions[tail_.front()] + kTailValues.back * back);
 }
 
 void TailLift::apply(Pose& target, BodyFrame& frame) const {

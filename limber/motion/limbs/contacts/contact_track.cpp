@@ -10,25 +10,28 @@ namespace limber {
 
 namespace {
 
-// 1/seconds; 6 to 15; of strength and flatness; by jerk on the shared people (25 and 12 before).
-constexpr double kPlantRate = 9;
-// A foot rests that is as low (hip heights; 0.02 to 0.09) and as slow (hip heights a second; 0.1 to 0.3), seen over the
-// step to a frame; set by hand.
-constexpr double kLow = 0.05, kSlow = 0.15;
-// Hip heights a second; 10 to 20, and 3 to 8 in the first frame: many recordings have a T-pose there; speeds of the
-// source's pelvis or feet that are no motion but a cut; set by hand.
-constexpr double kJump = 15, kFirstJump = 4;
+struct Detection {
+  // 1/seconds; 6 to 15; of strength and flatness; by jerk on the shared people (25 and 12 before).
+  double plantRate = 9;
+  // A foot rests that is as low (hip heights; 0.02 to 0.09) and as slow (hip heights a second; 0.1 to 0.3), seen over
+  // the step to a frame; set by hand.
+  double low = 0.05, slow = 0.15;
+  // Hip heights a second; 10 to 20, and 3 to 8 in the first frame: many recordings have a T-pose there; speeds of the
+  // source's pelvis or feet that are no motion but a cut; set by hand.
+  double jump = 15, firstJump = 4;
 
-// A foot that is planted at this speed (hip heights a second; 0.3 to 1; seen over kSeenSeconds to each side) keeps a
-// billionth of its weight (1e-12 to 1e-6); set by hand on the shared motions and people.
-constexpr double kFreeSpeed = 0.6, kFreeFirmness = 1e-9;
-constexpr double kSeenSeconds = 1.0 / 30;  // seconds; 0.02 to 0.05; a frame of the slowest recordings
+  // A foot that is planted at this speed (hip heights a second; 0.3 to 1; seen over seenSeconds to each side) keeps a
+  // billionth of its weight (1e-12 to 1e-6); set by hand on the shared motions and people.
+  double freeSpeed = 0.6, freeFirmness = 1e-9;
+  double seenSeconds = 1.0 / 30;  // seconds; 0.02 to 0.05; a frame of the slowest recordings
 
-constexpr double kSameMoment = 1e-6;  // seconds; up to a frame; from a frame to the edge of an edit; rounding only
+  double sameMoment = 1e-6;  // seconds; up to a frame; from a frame to the edge of an edit; rounding only
+};
+constexpr Detection kDetection;
 
 // 0 or 1 without a jump.
 void follow(bool wanted, double seconds, double& value, double& speed) {
-  springTo(wanted ? 1.0 : 0.0, kPlantRate, seconds, value, speed);
+  springTo(wanted ? 1.0 : 0.0, kDetection.plantRate, seconds, value, speed);
   value = std::clamp(value, 0.0, 1.0);
 }
 
@@ -62,7 +65,7 @@ void ContactReader::next(const BodyFrame& source, double seconds) {
 bool ContactReader::jumps(const BodyFrame& source, double seconds) {
   landmarks_.assign(1, pelvisOf(setup_.map, MapSide::kSource, source.positions));
   for (const Watched& watched : feet_) landmarks_.push_back(source.positions[watched.foot.ankle]);
-  const double jump = (frames_++ == 1 ? kFirstJump : kJump) * setup_.sourceHipHeight * seconds;
+  const double jump = (frames_++ == 1 ? kDetection.firstJump : kDetection.jump) * setup_.sourceHipHeight * seconds;
   bool jumped = false;
   for (std::size_t i = 0; i < landmarksBefore_.size(); ++i) {
     jumped = jumped || (landmarks_[i] - landmarksBefore_[i]).norm() > jump;
@@ -73,8 +76,8 @@ bool ContactReader::jumps(const BodyFrame& source, double seconds) {
 
 bool ContactReader::rests(Watched& watched, const Vec3& ankle, double seconds) const {
   const double unit = setup_.sourceHipHeight;
-  if (!watched.before || ankle.y() - watched.foot.ankleGround >= kLow * unit) return false;
-  return (ankle - *watched.before).norm() < kSlow * seconds * unit;
+  if (!watched.before || ankle.y() - watched.foot.ankleGround >= kDetection.low * unit) return false;
+  return (ankle - *watched.before).norm() < kDetection.slow * seconds * unit;
 }
 
 void ContactReader::read(Watched& watched, const BodyFrame& source, double seconds) const {
@@ -102,7 +105,7 @@ void ContactReader::read(Watched& watched, const BodyFrame& source, double secon
 std::optional<bool> ContactReader::editAt(const Watched& watched) const {
   std::optional<bool> planted;
   for (const ContactEdit& edit : watched.edits) {
-    if (time_ > edit.from - kSameMoment && time_ < edit.to + kSameMoment) planted = edit.planted;
+    if (time_ > edit.from - kDetection.sameMoment && time_ < edit.to + kDetection.sameMoment) planted = edit.planted;
   }
   return planted;
 }
@@ -128,7 +131,7 @@ ContactTrack::ContactTrack(const RetargetSetup& setup, std::span<const WatchedFo
 double ContactTrack::firmness(std::size_t frame, std::size_t foot) const {
   const FootAnchor anchor = at(frame, foot).anchor;
   if (anchor == FootAnchor::kNone) return 0;
-  const auto reach = static_cast<std::size_t>(std::max(1.0, std::round(kSeenSeconds / frameSeconds_)));
+  const auto reach = static_cast<std::size_t>(std::max(1.0, std::round(kDetection.seenSeconds / frameSeconds_)));
   std::size_t before = frame, after = frame;
   while (before > 0 && frame - before < reach && !cuts_[before]) --before;
   while (after + 1 < frames() && after - frame < reach && !cuts_[after + 1]) ++after;
@@ -137,8 +140,8 @@ double ContactTrack::firmness(std::size_t frame, std::size_t foot) const {
   const Vec3 displacement = anchor == FootAnchor::kToes ? to.toes - from.toes : to.ankle - from.ankle;
   const double speed =
       Vec3(displacement.x(), 0, displacement.z()).norm() / (static_cast<double>(after - before) * frameSeconds_);
-  const double fraction = speed / (kFreeSpeed * hipHeight_);
-  return std::pow(kFreeFirmness, fraction * fraction);
+  const double fraction = speed / (kDetection.freeSpeed * hipHeight_);
+  return std::pow(kDetection.freeFirmness, fraction * fraction);
 }
 
 std::vector<TimeSpan> ContactTrack::spans(std::size_t foot) const {

@@ -12,16 +12,19 @@ namespace limber {
 
 namespace {
 
-// 1/seconds. Along the ground a foot has to be planted at once, down to it and back to where it would be there is time.
-// By sliding on the shared motions (0.032 -> 0.008 hip heights a second) and by jerk.
-constexpr double kGrip = 80;        // 40 to 120; of the fractions to which it is free
-constexpr double kFading = 20;      // 10 to 40; of the displacement that pinning prevented
-constexpr double kSettling = 18;    // 10 to 30; of its height over where it has to be (20 before)
-constexpr double kUntwisting = 10;  // 5 to 20; of the twist of a foot that is free
-constexpr double kRolling = 40;     // 20 to 80; of the speed left where the pinned point changes
+struct Locking {
+  // 1/seconds. Along the ground a foot has to be planted at once, down to it and back to where it would be there is
+  // time. By sliding on the shared motions (0.032 -> 0.008 hip heights a second) and by jerk.
+  double grip = 80;        // 40 to 120; of the fractions to which it is free
+  double fading = 20;      // 10 to 40; of the displacement that pinning prevented
+  double settling = 18;    // 10 to 30; of its height over where it has to be (20 before)
+  double untwisting = 10;  // 5 to 20; of the twist of a foot that is free
+  double rolling = 40;     // 20 to 80; of the speed left where the pinned point changes
 
-constexpr double kMaxTwist = 0.35;  // radians; 0.2 to 0.8; a foot that is twisted by more is let go; set by hand
-constexpr double kCaughtUp = 0.25;  // fraction of the slack or the twist; 0 to 1; pinned again below it; set by hand
+  double maxTwist = 0.35;  // radians; 0.2 to 0.8; a foot that is twisted by more is let go; set by hand
+  double caughtUp = 0.25;  // fraction of the slack or the twist; 0 to 1; pinned again below it; set by hand
+};
+constexpr Locking kLocking;
 
 // Height of the ankle over which the foot settles.
 double baseHeight(const FootLock::Frame& frame, FootAnchor anchor) {
@@ -30,14 +33,10 @@ double baseHeight(const FootLock::Frame& frame, FootAnchor anchor) {
   return frame.ankle.y();
 }
 
-Vec3 level(const Vec3& v) {
-  return {v.x(), 0, v.z()};
-}
-
 }  // namespace
 
 void FootLock::Factor::follow(double wanted, double seconds) {
-  springTo(wanted, kGrip, seconds, value, speed);
+  springTo(wanted, kLocking.grip, seconds, value, speed);
 }
 
 // The first frame is where the foot is, but on the ground at once.
@@ -70,31 +69,31 @@ Vec3 FootLock::next(const Frame& frame, double seconds, double slack) {
 }
 
 void FootLock::turn(const Frame& frame, double seconds) {
-  twisted_ = frame.flat && std::abs(twist_) > (twisted_ ? kCaughtUp : 1) * kMaxTwist;
+  twisted_ = frame.flat && std::abs(twist_) > (twisted_ ? kLocking.caughtUp : 1) * kLocking.maxTwist;
   turning_.follow(frame.flat && !twisted_ ? 0 : 1, seconds);
-  const Vec3 from = level(before_->toes - before_->ankle), to = level(frame.toes - frame.ankle);
+  const Vec3 from = alongGround(before_->toes - before_->ankle), to = alongGround(frame.toes - frame.ankle);
   const double turned = std::atan2(from.cross(to).y(), from.dot(to));
-  twist_ = (twist_ - (1 - turning_.value) * turned) * std::exp(-kUntwisting * turning_.value * seconds);
+  twist_ = (twist_ - (1 - turning_.value) * turned) * std::exp(-kLocking.untwisting * turning_.value * seconds);
   const Vec3 roll = Eigen::AngleAxisd(twist_, Vec3::UnitY()) * (frame.toes - frame.ankle);
-  rolled_ = level(roll - roll_);
+  rolled_ = alongGround(roll - roll_);
   roll_ = roll;
 }
 
 void FootLock::moveAlong(const Frame& frame, double seconds, double slack) {
-  const Vec3 behind = level(before_->ankle - out_);
-  lost_ = frame.anchor != FootAnchor::kNone && behind.norm() > (lost_ ? kCaughtUp : 1) * slack;
+  const Vec3 behind = alongGround(before_->ankle - out_);
+  lost_ = frame.anchor != FootAnchor::kNone && behind.norm() > (lost_ ? kLocking.caughtUp : 1) * slack;
   freedom_.follow(frame.anchor != FootAnchor::kNone && !lost_ ? frame.slip : 1, seconds);
   const double freedom = freedom_.value;
 
   Vec3 left = -behind;
-  springTo(Vec3(Vec3::Zero()), kFading, seconds, left, catchUpSpeed_);
+  springTo(Vec3(Vec3::Zero()), kLocking.fading, seconds, left, catchUpSpeed_);
   catchUpSpeed_ *= freedom;
-  const Vec3 freeDisplacement = level(frame.ankle - before_->ankle) + left + behind;
+  const Vec3 freeDisplacement = alongGround(frame.ankle - before_->ankle) + left + behind;
   const bool byToes = frame.anchor == FootAnchor::kNone ? byToes_ : frame.anchor == FootAnchor::kToes;
   // When another point becomes pinned, the ankle's speed changes over to the one that this point leaves it.
   if (byToes != byToes_) rollSpeed_ += (byToes ? 1 : -1) * (1 - freedom) / seconds * rolled_;
   byToes_ = byToes;
-  rollSpeed_ *= std::exp(-kRolling * seconds);
+  rollSpeed_ *= std::exp(-kLocking.rolling * seconds);
   // The point moves by its fraction of the free displacement, and the ankle as the foot turns about it.
   out_ += freedom * freeDisplacement + seconds * rollSpeed_;
   if (byToes_) out_ -= (1 - freedom) * rolled_;
@@ -103,7 +102,7 @@ void FootLock::moveAlong(const Frame& frame, double seconds, double slack) {
 void FootLock::moveUpright(const Frame& frame, double seconds) {
   const double base = baseHeight(frame, anchor_);
   const double speed = (base - baseHeight(*before_, anchor_)) / seconds;
-  springTo(0.0, kSettling, seconds, lift_, liftSpeed_);
+  springTo(0.0, kLocking.settling, seconds, lift_, liftSpeed_);
   out_.y() = base + lift_;
   if (frame.anchor == anchor_) return;
   anchor_ = frame.anchor;

@@ -11,17 +11,20 @@ namespace limber {
 
 namespace {
 
-// Times the source's foot length, scaled; 1 to 2 (2 before); longer feet pitch less; by jerk on the shared pairs (at
-// most 1.1 times the source's on 526 of 528).
-constexpr double kLong = 1.3;
-constexpr double kFlat = 0.1;  // radians; 0.05 to 0.2; pitch at which a flat foot is levelled by half; likewise
-// Cosine of the sole's slope; 0.3 to 0.5; from there on a foot pitches less wholly, at the opposite not at all; set by
-// hand.
-constexpr double kSteepest = 0.5;
+struct Pitching {
+  // Times the source's foot length, scaled; 1 to 2 (2 before); longer feet pitch less; by jerk on the shared pairs (at
+  // most 1.1 times the source's on 526 of 528).
+  double longFoot = 1.3;
+  double flat = 0.1;  // radians; 0.05 to 0.2; pitch at which a flat foot is levelled by half; likewise
+  // Cosine of the sole's slope; 0.3 to 0.5; from there on a foot pitches less wholly, at the opposite not at all; set
+  // by hand.
+  double steepest = 0.5;
 
-// Radians that a foot slopes down from its ankle, past the vertical; pi / 2 to pi, the first below the second; between
-// them its sole comes to look up. The third: 0.01 to 0.1; over which the tip is kept up. Set by hand.
-constexpr double kSteepTip = 2.5, kUpTip = 3, kSoftTip = 0.02;
+  // Radians that a foot slopes down from its ankle, past the vertical; pi / 2 to pi, the first below the second;
+  // between them its sole comes to look up. The third: 0.01 to 0.1; over which the tip is kept up. Set by hand.
+  double steepTip = 2.5, upTip = 3, softTip = 0.02;
+};
+constexpr Pitching kPitching;
 
 double lengthOf(const NeutralPose& neutral, Index ankle, Index toes) {
   return (neutral.restPositions[toes] - neutral.restPositions[ankle]).norm();
@@ -37,16 +40,12 @@ double slopeToGround(double height) {
   return straightenedAsin(height, kMaxExactSine);
 }
 
-Vec3 level(const Vec3& v) {
-  return {v.x(), 0, v.z()};
-}
-
 }  // namespace
 
 double footPitchFraction(const RetargetSetup& setup, const LegSpec& leg) {
   if (!leg.toes) return 1;
   const double source = setup.scale * lengthOf(setup.sourceNeutral, leg.sourceEnd, *leg.sourceToes);
-  const double times = lengthOf(setup.targetNeutral, leg.end, *leg.toes) / (kLong * source);
+  const double times = lengthOf(setup.targetNeutral, leg.end, *leg.toes) / (kPitching.longFoot * source);
   return source > 0 && times > 1 ? 1 / (times * times) : 1;
 }
 
@@ -60,8 +59,9 @@ void limitFootPitch(const RetargetSetup& setup, const RootPositioner& root, std:
     const Vec3 restDirection = (neutral.positions[*leg.toes] - neutral.positions[leg.end]).normalized();
     const Vec3 side = turn * Vec3::UnitX(), line = turn * restDirection;
     const Vec3 resting = Eigen::AngleAxisd(std::atan2(-side.z(), side.x()), Vec3::UnitY()) * restDirection;
-    const double upright = std::hypot(side.x(), side.z()) * smoothStep(kSteepest + (turn * Vec3::UnitY()).y());
-    const double pitch = angleOf(line, resting), flat = standing * kFlat * kFlat / (kFlat * kFlat + pitch * pitch);
+    const double upright = std::hypot(side.x(), side.z()) * smoothStep(kPitching.steepest + (turn * Vec3::UnitY()).y());
+    const double pitch = angleOf(line, resting),
+                 flat = standing * kPitching.flat * kPitching.flat / (kPitching.flat * kPitching.flat + pitch * pitch);
     const double less = (1 - leg.footPitch * (1 - flat)) * upright;
     const Vec3 wanted = ((1 - less) * line + less * resting).normalized();
     const Quat limited = shortestRotation(line, wanted) * frame.rotations[leg.end];
@@ -76,12 +76,13 @@ void keepTipUp(const RetargetSetup& setup, const RootPositioner& root, const Leg
   const Quat turn = frame.rotations[leg.end] * neutral.rotations[leg.end].conjugate();
   // Where the foot faces, also where it points straight down.
   const Vec3 restDirection = neutral.positions[*leg.tip] - neutral.positions[leg.end];
-  const Vec3 ahead = level(turn * (level(restDirection).normalized() + Vec3::UnitY()));
+  const Vec3 ahead = alongGround(turn * (alongGround(restDirection).normalized() + Vec3::UnitY()));
   const double along = line.dot(ahead.normalized()), length = std::hypot(along, line.y());
   if (!(ahead.norm() > 1e-6) || !(length > 0)) return;
   const double slope = std::atan2(line.y(), along);
-  const double fraction = std::clamp((kUpTip + slope) / (kUpTip - kSteepTip), 0.0, 1.0);
-  const double up = fraction * softPositive(-slopeToGround((ankle.y() - leg.toesGround) / length) - slope, kSoftTip);
+  const double fraction = std::clamp((kPitching.upTip + slope) / (kPitching.upTip - kPitching.steepTip), 0.0, 1.0);
+  const double up =
+      fraction * softPositive(-slopeToGround((ankle.y() - leg.toesGround) / length) - slope, kPitching.softTip);
   const Quat raised = Eigen::AngleAxisd(up, ahead.normalized().cross(Vec3::UnitY())) * frame.rotations[leg.end];
   LimbReach(setup, root).turnEnd(leg.end, raised, frame, target);
 }
