@@ -4,6 +4,9 @@
 
 #include "limber/document/clip/clip_io.h"
 #include "limber/document/clip/motion_io.h"
+#include "limber/document/rig/rest_pose.h"
+#include "limber/document/scene/shape_surface.h"
+#include "limber/document/testing/two_bind_poses.h"
 #include "limber/samples/samples.h"
 
 namespace limber {
@@ -46,6 +49,29 @@ TEST(Character, RenamedHasItsOwnNamesAndTheSameSurface) {
   EXPECT_NE(character.skeleton().joints[0].name, "another");
   EXPECT_EQ(&renamed.surface(), &character.surface());
   EXPECT_EQ(&renamed.weights(), &character.weights());
+}
+
+TEST(Character, OfARigMovesAsItIsBound) {
+  const Character character(flying());
+  EXPECT_EQ(&character.moving(), &character.binding()) << "read once";
+}
+
+TEST(Character, ShapedSurfaceIsTheSameWithoutShapes) {
+  const Character character(flying());
+  EXPECT_EQ(&character.shapedSurface(), &character.surface());
+  EXPECT_EQ(shapedGeometry(flying()).positions, character.surface().positions);
+}
+
+TEST(Character, InOneBindPoseIsTheSameOrThatOfTheJoinedDocument) {
+  const Character one(flying());
+  EXPECT_EQ(&one.inOneBindPose().document(), &flying());
+  const Asset asset = testing::partsInTwoBindPoses({0, 5, 0});
+  const Character two = asset;
+  const Character joined = two.inOneBindPose();
+  EXPECT_NE(&joined.document(), &asset);
+  EXPECT_EQ(&two.inOneBindPose().surface(), &joined.surface()) << "made once";
+  EXPECT_EQ(joined.surface().positions, collectGeometry(*withJoinedBinds(asset)).positions);
+  EXPECT_NE(joined.surface().positions, two.surface().positions);
 }
 
 TEST(Character, OfADocumentThatGetsClips) {
