@@ -377,7 +377,7 @@ void run(ConvertArguments options) {
     if (isBvh(options.output)) {
       writeBvhFiles(*motion, options, account);
     } else {
-      const VrmaSource source{model ? &*model : nullptr, &*motion, options.editsClips()};
+      const VrmaSource source{model ? std::optional<Character>(*model) : std::nullopt, &*motion, options.editsClips()};
       writeVrmaFiles(source, pathsOfClips(*motion, options.output), options.common.quiet, account);
     }
   } else {

@@ -18,12 +18,13 @@ namespace limber::cli {
 namespace {
 
 std::vector<ExpressionTrack> expressionsOf(const VrmaSource& source, const Clip& clip, Warnings& warnings) {
-  if (source.model == nullptr) return {};
-  const std::vector<gltf::Animation>& animations = source.model->document.animations;
+  if (!source.model) return {};
+  const Asset& model = source.model->document();
+  const std::vector<gltf::Animation>& animations = model.document.animations;
   const auto found = std::find_if(animations.begin(), animations.end(),
                                   [&](const gltf::Animation& animation) { return animation.name == clip.name; });
   if (found == animations.end()) return {};
-  std::vector<ExpressionTrack> tracks = expressionTracks(*source.model, static_cast<Index>(found - animations.begin()));
+  std::vector<ExpressionTrack> tracks = expressionTracks(model, static_cast<Index>(found - animations.begin()));
   if (!source.isEdited) return tracks;
   warnings.add("vrma-expressions", "expressions are left out of clips that are cut, mirrored or sampled anew", {},
                tracks.size());
@@ -45,9 +46,9 @@ VrmaMotion motionAlone(const Motion& motion, Warnings& warnings) {
 }
 
 // As the model would move as a VRM: bones that hang elsewhere hang where VRM wants them.
-VrmaMotion motionOfModel(const Asset& model, const std::vector<Clip>& clips, Warnings& warnings) {
-  Asset asset = model.clone();
-  AssetSkeleton rig = animatedSkeleton(asset);
+VrmaMotion motionOfModel(const Character& model, const std::vector<Clip>& clips, Warnings& warnings) {
+  Asset asset = model.document().clone();
+  AssetSkeleton rig = model.moving();
   VrmaMotion read{{}, {}, vrmBones(asset, rig, warnings), {}};
   asset.document.animations.clear();
   addClips(asset, rig, clips);
@@ -67,7 +68,7 @@ void writeVrmaFiles(const VrmaSource& source, const std::vector<std::filesystem:
   if (paths.empty()) throw Error(ErrorCode::kBadArgument, "there is no clip to write", motion.name);
   Warnings warnings;
   const VrmaMotion read =
-      source.model != nullptr ? motionOfModel(*source.model, motion.clips, warnings) : motionAlone(motion, warnings);
+      source.model ? motionOfModel(*source.model, motion.clips, warnings) : motionAlone(motion, warnings);
   std::vector<Bytes> files;
   for (std::size_t c = 0; c < motion.clips.size(); ++c) {
     const std::vector<ExpressionTrack> expressions = expressionsOf(source, motion.clips[c], warnings);

@@ -2,9 +2,10 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
-#include "limber/document/asset.h"
+#include "limber/character/character.h"
 #include "limber/document/vrm/vrma_write.h"
 #include "limber/skeleton/motion.h"
 
@@ -13,8 +14,8 @@ namespace limber::cli {
 class Account;
 
 struct VrmaSource {
-  const Asset* model = nullptr;    // null: a skeleton alone
-  const Motion* motion = nullptr;  // over the model's animatedSkeleton
+  std::optional<Character> model;  // none: a skeleton alone
+  const Motion* motion = nullptr;  // over the model's moving()
   bool isEdited = false;           // its clips are no longer the model's: weights of blend shapes do not fit
 };
 

@@ -33,8 +33,8 @@ std::vector<bool> nodesOfMeshes(const Asset& asset) {
 Geometry bareGeometry(Asset& asset) {
   const std::vector<bool> carries = nodesOfMeshes(asset);
   removeChannels(asset, [&](Index node, std::string_view) { return node < carries.size() && carries[node]; });
-  const Geometry geometry = collectGeometry(asset);
-  freezeGeometry(asset, geometry, geometry.positions, readNormals(asset, geometry));
+  const Character bound(asset);
+  freezeGeometry(asset, bound.surface(), bound.surface().positions, readNormals(asset, bound.surface()));
   return collectGeometry(asset);
 }
 

@@ -222,14 +222,14 @@ void freeNames(const Skeleton& skeleton, Asset& target) {
   }
 }
 
-TransferReport runTransfer(const Character& giver, Asset& target, const TransferAssetOptions& options,
-                           Progress& progress) {
+TransferReport runTransfer(const Character& giver, const Character& taker, Asset& target,
+                           const TransferAssetOptions& options, Progress& progress) {
   TransferReport report;
   progress.stage("read geometry");
   checkHasRig(giver);
   std::optional<Skeleton> own;
-  if (hasRig(target)) {
-    if (options.ownSkeleton) own = readSkeleton(target).skeleton;
+  if (taker.hasRig()) {
+    if (options.ownSkeleton) own = taker.binding().skeleton;
     joinBindPoses(target);
     const RemovedRig removed = takeRigOut(target);
     report.removedJoints = removed.joints;
@@ -283,7 +283,7 @@ TransferReport transferOnto(const Character& source, Asset& target, const Transf
   Asset result = target.clone();
   TransferReport report = [&] {
     try {
-      return runTransfer(source.inOneBindPose(), result, options, progress);
+      return runTransfer(source.inOneBindPose(), target, result, options, progress);
     } catch (const Error& error) {
       if (!error.where().empty()) throw;
       throwWithin(error, target.name);
