@@ -72,14 +72,17 @@ Motion withClip(Motion motion, const std::string& file) {
 }
 
 void run(const MotionEvaluationArguments& options) {
-  const Asset asset = readAsset(options.result);
-  const Motion result = asItRests(withClip(motionOf(asset), options.result));
-  const Motion source = asItRests(withClip(readMotion(options.source), options.source));
+  const Character character(readAsset(options.result));
+  const Asset& asset = character.document();
+  const Motion result = asItRests(withClip(motionOf(asset, character.moving()), options.result), character.reading());
+  const Motion given = withClip(readMotion(options.source), options.source);
+  const SkeletonReading sourceReading(given.skeleton);
+  const Motion source = asItRests(given, sourceReading);
   const Clip& moved = clipOfResult(result, source, options.clip);
   const Clip& original = clipOfSource(source, options.sourceClip, moved.name);
   SkeletonMap map;
   if (options.mapFile.empty()) {
-    map = matchMotion(source, result.skeleton);
+    map = matchMotion(source, sourceReading, character.reading());
   } else {
     const Bytes text = readFile(options.mapFile);
     map = skeletonMapFromJson({reinterpret_cast<const char*>(text.data()), text.size()}, source.skeleton,
@@ -97,9 +100,10 @@ void run(const MotionEvaluationArguments& options) {
   const ShownJoints shownFrom = shownJoints(source.skeleton, sampled, setup.sourceKinematics.toBody()),
                     shownTo = shownJoints(result.skeleton, to, setup.targetKinematics.toBody());
   MotionMetrics metrics = measureMotion(setup, from, toPlain, &shownFrom, &shownTo);
-  if (hasRig(asset)) metrics.selfPenetration = measureSelfPenetration(readSkinnedModel(asset), to.poses);
+  if (character.hasRig()) metrics.selfPenetration = measureSelfPenetration(readSkinnedModel(character), to.poses);
   if (!options.truth.empty()) {
-    const Motion truth = asItRests(withClip(readMotion(options.truth), options.truth));
+    const Motion known = withClip(readMotion(options.truth), options.truth);
+    const Motion truth = asItRests(known, known.skeleton);
     PoseSequence right = sampleFrames(truth.skeleton, clipOfResult(truth, source, options.clip), rate);
     if (truth.skeleton.jointCount() != result.skeleton.jointCount()) {
       throw Error(ErrorCode::kBadArgument, "has another skeleton than the result", options.truth);
@@ -128,7 +132,7 @@ void runMatrix(const MatrixOptions& options) {
   RetargetTrial trial = options.trial;
   trial.motions.assign(options.motions.begin(), options.motions.end());
   trial.characters.assign(options.characters.begin(), options.characters.end());
-  trial.prepare = [](Motion motion) { return asItRests(std::move(motion)); };
+  trial.prepare = [](const Motion& motion) { return asItRests(motion, motion.skeleton); };
   for (const std::string& method : trial.methods) findRetargetMethod(method);
   TerminalProgress progress(options.common.quiet);
   Warnings skipped;

@@ -30,7 +30,8 @@ void checkCanRetarget(const Asset& asset, const Motion& motion, const Adapter& a
 
 // Both stand in rest pose when they are handed over, also where one lies in its own file.
 Motion standing(const Motion& motion) {
-  return turnedMotion(asItRests(motion), turnToStand(motion.skeleton));
+  const SkeletonReading skeleton(motion.skeleton);
+  return turnedMotion(asItRests(motion, skeleton), turnToStand(skeleton));
 }
 
 Skeleton turnedSkeleton(const Skeleton& skeleton, const Quat& turn) {

@@ -18,16 +18,17 @@ namespace {
 constexpr std::string_view kPoseMethod = "limb-ik";
 
 // A clip of that one moment.
-Motion motionOf(const PortablePose& pose) {
+Motion motionOf(const PortablePose& pose, const SkeletonReading& skeleton) {
   Motion motion;
   motion.skeleton = pose.skeleton;
   setKey(motion.clips.emplace_back(), motion.skeleton, pose.pose, 0);
-  return asItRests(std::move(motion));
+  return asItRests(std::move(motion), skeleton);
 }
 
-SkeletonMap matchBodies(const PortablePose& pose, const Motion& posed, const Skeleton& to) {
+SkeletonMap matchBodies(const PortablePose& pose, const Motion& posed, const SkeletonReading& from,
+                        const SkeletonReading& to) {
   try {
-    return matchMotion(posed, to);
+    return matchMotion(posed, from, to);
   } catch (const Error& error) {
     if (error.code() != ErrorCode::kUnsupported) throw;
     throw KnownError(ErrorKind::kUnlikePose,
@@ -77,8 +78,9 @@ bool isFinite(const Pose& pose) {
 Pose putPose(const PortablePose& pose, const Skeleton& to, const Pose& now) {
   if (std::optional<Pose> same = poseByNames(pose, to)) return *std::move(same);
 
-  const Motion motion = motionOf(pose);
-  const SkeletonMap map = matchBodies(pose, motion, to);
+  const SkeletonReading from(pose.skeleton), reading(to);
+  const Motion motion = motionOf(pose, from);
+  const SkeletonMap map = matchBodies(pose, motion, from, reading);
   const PlainSkeleton source(motion.skeleton), target(to);
   const PoseSequence frames = source.plain(sampleFrames(motion.skeleton, motion.clips.front(), 1));
   RetargetOptions options;
@@ -88,7 +90,7 @@ Pose putPose(const PortablePose& pose, const Skeleton& to, const Pose& now) {
   const RetargetSetup setup(source.skeleton(), target.skeleton(), map, options, tells ? nullptr : &frames);
   Pose result = target.original(retargetFrames(findRetargetMethod(kPoseMethod), setup, frames)).poses.front();
 
-  const Quat turn = turnToStand(to);
+  const Quat turn = turnToStand(reading);
   for (Index j = 0; j < to.jointCount(); ++j) {
     if (to.joints[j].parent) continue;
     result.locals[j].translation = turn * result.locals[j].translation;

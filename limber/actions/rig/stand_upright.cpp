@@ -1,5 +1,6 @@
 #include "limber/actions/rig/stand_upright.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -41,13 +42,9 @@ Quat turnOf(const Vec3& up) {
 
 // A body with a head and two legs, each named, so that no form in another pose misleads.
 bool isNamedBiped(const Anatomy& anatomy) {
-  const auto isSure = [&](PartKind kind, Side side) {
-    const Part* part = anatomy.find(kind, side);
-    return part && part->evidence != Evidence::kForm && part->confidence >= kDoubtful;
-  };
-  return anatomy.pairsOf(PartKind::kLeg) == 1 && isSure(PartKind::kTrunk, Side::kCenter) &&
-         isSure(PartKind::kHead, Side::kCenter) && isSure(PartKind::kLeg, Side::kLeft) &&
-         isSure(PartKind::kLeg, Side::kRight);
+  const auto body = anatomy.certainBody();
+  const auto isNamed = [](const Part* part) { return part->evidence != Evidence::kForm; };
+  return anatomy.pairsOf(PartKind::kLeg) == 1 && body && std::all_of(body->begin(), body->end(), isNamed);
 }
 
 // From a rest pose that lies to clips of which most begin upright along +Y; else the identity.
@@ -58,7 +55,7 @@ Quat turnOfClips(const Motion& motion, const SkeletonReading& skeleton) {
   for (const Clip& clip : motion.clips) {
     Pose pose = restPose(motion.skeleton);
     sampleClip(clip, 0, pose);
-    const std::optional<Vec3> now = uprightAxis(motion.skeleton, pose);
+    const std::optional<Vec3> now = uprightAxis(skeleton, pose);
     if (now && isUpright(*now)) ++standing;
   }
   return 2 * standing > motion.clips.size() ? turn : Quat::Identity();
@@ -124,11 +121,6 @@ Motion asItRests(Motion motion, const SkeletonReading& skeleton) {
   const Quat back = turnOfClips(motion, skeleton).conjugate();
   for (Clip& clip : motion.clips) clip = turnClip(std::move(clip), motion.skeleton, back);
   return motion;
-}
-
-Motion asItRests(Motion motion) {
-  const SkeletonReading skeleton(motion.skeleton);
-  return asItRests(std::move(motion), skeleton);
 }
 
 }  // namespace limber

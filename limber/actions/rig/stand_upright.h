@@ -35,7 +35,8 @@ UprightCharacter standUpright(Asset& asset, Warnings& warnings);
 
 // A motion whose clips stand along +Y while its rest pose lies: with its clips turned to lie as well, so that one is
 // measured against the other. Any other as it is.
-Motion asItRests(Motion motion);
-Motion asItRests(Motion motion, const SkeletonReading& skeleton);  // of the motion
+//
+// skeleton  of the motion
+Motion asItRests(Motion motion, const SkeletonReading& skeleton);
 
 }  // namespace limber

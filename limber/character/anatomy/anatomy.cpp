@@ -178,6 +178,13 @@ Index Anatomy::pairsOf(PartKind kind) const {
   return pairs;
 }
 
+std::optional<std::array<const Part*, 4>> Anatomy::certainBody() const {
+  const std::array<const Part*, 4> body = {find(PartKind::kTrunk), find(PartKind::kHead),
+                                           find(PartKind::kLeg, Side::kLeft), find(PartKind::kLeg, Side::kRight)};
+  const auto isSure = [](const Part* part) { return part && part->confidence >= kDoubtful; };
+  return std::all_of(body.begin(), body.end(), isSure) ? std::optional(body) : std::nullopt;
+}
+
 Anatomy readAnatomy(const Skeleton& skeleton, const AnatomyOptions& options) {
   return readAnatomy(skeleton, restPose(skeleton), options);
 }

@@ -2,6 +2,7 @@
 // studio ask.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -84,6 +85,9 @@ struct Anatomy {
 
   const Part* find(PartKind kind, Side side = Side::kCenter, Index pair = 0) const;
   Index pairsOf(PartKind kind) const;  // how many pairs (or single ones) there are
+  // The trunk, the head, and the left and the right leg of the first pair; none unless all are there and read with a
+  // confidence of kDoubtful or more.
+  std::optional<std::array<const Part*, 4>> certainBody() const;
 };
 
 // A label that the user has set: all else is read around it.

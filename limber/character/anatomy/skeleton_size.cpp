@@ -23,16 +23,10 @@ bool isOfBody(const Anatomy& anatomy, Index joint) {
          kind != PartKind::kOther;
 }
 
-bool isSure(const Part* part) {
-  return part != nullptr && part->confidence >= kDoubtful;
-}
-
 // Insects and birds come smaller, fishes and snakes in any size.
 bool isPersonOrQuadruped(const Anatomy& anatomy) {
   const Index legs = anatomy.pairsOf(PartKind::kLeg);
-  return (legs == 1 || legs == 2) && anatomy.pairsOf(PartKind::kWing) == 0 && isSure(anatomy.find(PartKind::kTrunk)) &&
-         isSure(anatomy.find(PartKind::kHead)) && isSure(anatomy.find(PartKind::kLeg, Side::kLeft)) &&
-         isSure(anatomy.find(PartKind::kLeg, Side::kRight));
+  return (legs == 1 || legs == 2) && anatomy.pairsOf(PartKind::kWing) == 0 && anatomy.certainBody();
 }
 
 }  // namespace

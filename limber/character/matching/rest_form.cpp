@@ -152,8 +152,4 @@ SkeletonMap matchMotion(const Motion& motion, const SkeletonReading& source, con
   return matchSkeletons(source, target, unlikeBodies, pose ? &*pose : nullptr);
 }
 
-SkeletonMap matchMotion(const Motion& motion, const SkeletonReading& target, bool unlikeBodies) {
-  return matchMotion(motion, motion.skeleton, target, unlikeBodies);
-}
-
 }  // namespace limber

@@ -31,6 +31,5 @@ Skeleton skeletonWithForm(const Motion& motion);
 // source  of the motion's skeleton
 SkeletonMap matchMotion(const Motion& motion, const SkeletonReading& source, const SkeletonReading& target,
                         bool unlikeBodies = false);
-SkeletonMap matchMotion(const Motion& motion, const SkeletonReading& target, bool unlikeBodies = false);
 
 }  // namespace limber

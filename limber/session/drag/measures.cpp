@@ -83,11 +83,11 @@ std::optional<MotionMetrics> measureClip(const SessionState& state) {
   if (!movement.chosen || !movement.clips[*movement.chosen].source) return std::nullopt;
   const ClipSource& source = *movement.clips[*movement.chosen].source;
   const Skeleton &from = source.motion->skeleton, &to = state.rig->skeleton();
-  const Clip original = asItRests(*source.motion).clips[source.clip];
+  const Clip original = asItRests(*source.motion, from).clips[source.clip];
   Motion result;
   result.skeleton = to;
   result.clips.push_back(*movement.clip());
-  const Clip moved = asItRests(std::move(result)).clips.front();
+  const Clip moved = asItRests(std::move(result), to).clips.front();
   try {
     const double rate = frameRateOf(original);
     const PlainSkeleton plainFrom(from), plainTo(to);

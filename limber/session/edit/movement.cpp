@@ -169,7 +169,7 @@ std::size_t clipOfMotion(const Motion& motion, const std::string& name) {
 // Tells `source` which feet stand in it.
 Clip retargeted(ClipSource& source, const RiggedModel& rig) {
   const Skeleton& skeleton = rig.skeleton();
-  const Motion motion = asItRests(*source.motion);
+  const Motion motion = asItRests(*source.motion, source.motion->skeleton);
   RetargetOptions options;
   options.reach = source.command.reach;
   options.contacts = source.command.contacts;
@@ -272,7 +272,7 @@ void apply(const RetargetMotion& command, Movement& movement, const RiggedModel&
   const Motion& motion = *source.motion;
   source.clip = clipOfMotion(motion, command.clip);
   if (!(command.reach >= 0 && command.reach <= 1)) refuse("the reach is not between 0 and 1");
-  source.map = command.map.empty() ? matchMotion(motion, rig.character.reading())
+  source.map = command.map.empty() ? matchMotion(motion, motion.skeleton, rig.character.reading())
                                    : skeletonMapFromJson(command.map, motion.skeleton, rig.skeleton());
 
   for (std::size_t c = 0; c < movement.clips.size(); ++c) {
@@ -360,7 +360,7 @@ std::optional<ClipSource> sourceOn(ClipSource source, const std::string& map, co
     source.command.map.clear();
   }
   try {
-    source.map = matchMotion(*source.motion, rig.character.reading());
+    source.map = matchMotion(*source.motion, source.motion->skeleton, rig.character.reading());
     return source;
   } catch (const Error&) {
     return std::nullopt;
