@@ -95,7 +95,7 @@ void prepare(RetargetArguments& options) {
 }
 
 std::vector<RetargetedClip> addCombined(Asset& asset, const Character& character, const RetargetArguments& options,
-                                        Progress& progress, Warnings& warnings) {
+                                        const RetargetAssetOptions& retarget, Progress& progress, Warnings& warnings) {
   progress.stage("retarget");
   const MotionOptions reading = options.motionFiles.options();
   std::vector<Motion> motions;
@@ -104,7 +104,7 @@ std::vector<RetargetedClip> addCombined(Asset& asset, const Character& character
     warnings.append(motions.back().warnings);
   }
   asset.warnings = {};
-  std::vector<RetargetedClip> clips = combineOnto(asset, character, motions, options.retarget, *options.combine);
+  std::vector<RetargetedClip> clips = combineOnto(asset, character, motions, retarget, *options.combine);
   warnings.append(asset.warnings);
   return clips;
 }
@@ -112,7 +112,10 @@ std::vector<RetargetedClip> addCombined(Asset& asset, const Character& character
 // Adds all motions' clips; the map that is saved is that of the first motion.
 std::vector<RetargetedClip> addMotions(Asset& asset, const Character& character, const RetargetArguments& options,
                                        Progress& progress, Warnings& warnings) {
-  if (options.combine) return addCombined(asset, character, options, progress, warnings);
+  SkeletonMatches matches;  // motions mostly have one skeleton
+  RetargetAssetOptions retarget = options.retarget;
+  retarget.matches = &matches;
+  if (options.combine) return addCombined(asset, character, options, retarget, progress, warnings);
   std::vector<RetargetedClip> clips;
   const MotionOptions reading = options.motionFiles.options();
   for (std::size_t i = 0; i < options.motions.size(); ++i) {
@@ -123,11 +126,11 @@ std::vector<RetargetedClip> addMotions(Asset& asset, const Character& character,
     try {
       ProgramClips made;
       if (options.program) {
-        made = retargetByProgram(asset, character, motion, *options.program, options.retarget, progress);
+        made = retargetByProgram(asset, character, motion, *options.program, retarget, progress);
         warnings.append(made.warnings);
       } else {
         asset.warnings = {};
-        made.clips = retargetOnto(asset, character, motion, options.retarget);
+        made.clips = retargetOnto(asset, character, motion, retarget);
         warnings.append(asset.warnings);
       }
       for (RetargetedClip& clip : made.clips) clips.push_back(std::move(clip));
@@ -138,12 +141,12 @@ std::vector<RetargetedClip> addMotions(Asset& asset, const Character& character,
   return clips;
 }
 
-std::vector<ClipEditReport> edit(Asset& asset, const RetargetArguments& options,
+std::vector<ClipEditReport> edit(Asset& asset, const Character& character, const RetargetArguments& options,
                                  const std::vector<RetargetedClip>& clips, Warnings& warnings) {
   std::vector<std::string> names;
   for (const RetargetedClip& clip : clips) names.push_back(clip.name);
   asset.warnings = {};
-  std::vector<ClipEditReport> reports = editClips(asset, names, options.clipEdits.edits);
+  std::vector<ClipEditReport> reports = editClips(asset, names, options.clipEdits.edits, character.reading());
   warnings.append(asset.warnings);
   return reports;
 }
@@ -165,11 +168,12 @@ void tell(const RetargetArguments& options, const std::vector<RetargetedClip>& c
   if (options.output != "-") account.line(fmt::format("written: {}", options.output));
 }
 
-void write(const Asset& asset, const RetargetArguments& options, const std::vector<RetargetedClip>& clips,
-           Warnings& warnings) {
+void write(const Asset& asset, const Character& character, const RetargetArguments& options,
+           const std::vector<RetargetedClip>& clips, Warnings& warnings) {
   std::vector<OutputFile> companions;
   if (!options.saveMapFile.empty()) companions.push_back({options.saveMapFile, asBytes(clips.front().mapJson)});
   WriteModelOptions write;
+  write.reading = character.reading();
   write.target = options.target.target;
   if (holdsOneClip(options.output) && !clips.empty()) write.clip = clips.front().name;
   write.companions = companions;
@@ -210,9 +214,9 @@ void runRetarget(RetargetArguments options) {
   const UprightCharacter upright = standUpright(asset, warnings);
   options.retarget.turn = upright.turn;
   const std::vector<RetargetedClip> clips = addMotions(asset, upright.character, options, *progress, warnings);
-  const std::vector<ClipEditReport> edits = edit(asset, options, clips, warnings);
+  const std::vector<ClipEditReport> edits = edit(asset, upright.character, options, clips, warnings);
   progress->stage("write");
-  write(asset, options, clips, warnings);
+  write(asset, upright.character, options, clips, warnings);
   progress.finish();
   tell(options, clips, edits, warnings);
 }
@@ -272,9 +276,9 @@ void runAnimate(RetargetArguments options) {
     if (rigged || error.code() != ErrorCode::kUnsupported) throw;
     throw Error(error.code(), error.message(), error.where(), remedyFor(matches));
   }
-  const std::vector<ClipEditReport> edits = edit(asset, options, clips, warnings);
+  const std::vector<ClipEditReport> edits = edit(asset, *character, options, clips, warnings);
   progress->stage("write");
-  write(asset, options, clips, warnings);
+  write(asset, *character, options, clips, warnings);
   progress.finish();
   tell(options, clips, edits, warnings);
 }

@@ -35,16 +35,18 @@ void keepOneKeyOfStill(std::vector<Track<Value>>& tracks) {
 // What a build is like in rest pose, once its clips' turn makes it stand.
 struct StandingBody {
   Skeleton skeleton;
-  Box box;  // of its surface
+  Index body;  // its bodyJoint
+  Box box;     // of its surface
 };
 
 StandingBody standingBody(const Geometry& still, const Skeleton& skeleton, const Quat& turn) {
-  StandingBody body{skeleton, {}};
+  StandingBody body{skeleton, 0, {}};
   for (Joint& joint : body.skeleton.joints) {
     if (joint.parent) continue;
     joint.rest.translation = turn * joint.rest.translation;
     joint.rest.rotation = turn * joint.rest.rotation;
   }
+  body.body = bodyJoint(body.skeleton);
   for (const Vec3f& position : still.positions) body.box.add(turn * position.cast<double>());
   return body;
 }
@@ -53,7 +55,7 @@ StandingBody standingBody(const Geometry& still, const Skeleton& skeleton, const
 // anywhere.
 Vec3 startOf(const StandingBody& body, const Clip& clip) {
   RootMotionOptions options;
-  options.body = bodyJoint(body.skeleton);
+  options.body = body.body;
   options.heading = true;
   options.smoothing = 0;
   const Vec3 rest(body.box.center().x(), body.box.min.y(), body.box.center().z());
@@ -87,7 +89,7 @@ BodyMotion moveBuild(const Asset& character, const BodyBuild& build, std::span<c
         throw error.within(motion.name);
       }
     }
-    editClips(asset, names, options.edits);
+    editClips(asset, names, options.edits, built.reading());
     Warnings ofKeys;
     body.skeleton = animatedSkeleton(asset);  // clips may have got a root joint
     const StandingBody standing = standingBody(built.surface(), body.skeleton.skeleton, retarget.turn);

@@ -133,9 +133,10 @@ class CharactersRun {
     for (const Motion& motion : motions) {
       for (const RetargetedClip& clip : retargetOnto(asset, reading, motion, options)) clips.push_back(clip.name);
     }
-    editClips(asset, clips, job_.edits);
+    editClips(asset, clips, job_.edits, reading.reading());
     warnings.append(asset.warnings);
     WriteModelOptions write = job_.write;
+    write.reading = reading.reading();
     const fs::path path = job_.folder / names_[c * filesEach_ + f];
     if (holdsOneClip(path)) write.clip = clips.front();
     warnings.append(writeModel(asset, path, write));

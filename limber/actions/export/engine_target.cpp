@@ -155,8 +155,8 @@ class TargetMaker {
         skeleton_(hasRig(asset) ? readSkeleton(asset) : movingSkeleton(asset)),
         globals_(restGlobals(skeleton_.skeleton)) {}
 
-  void make() {
-    const SkeletonReading reading(skeleton_.skeleton);
+  void make(const SkeletonReading& known) {
+    const SkeletonReading reading = known.of(skeleton_.skeleton);
     const Anatomy& anatomy = reading.anatomy();
     const std::vector<HumanoidJoint> bones = humanoidJoints(reading);
     const TargetNames names = targetNames(skeleton_.skeleton, anatomy, bones, target_.boneNames, target_.style);
@@ -314,14 +314,14 @@ const EngineTarget& findTarget(std::string_view name) {
   return findByName(kTargets, "target", name);
 }
 
-void toTarget(Asset& asset, const EngineTarget& target) {
+void toTarget(Asset& asset, const EngineTarget& target, const SkeletonReading& known) {
   if (target.isPlain()) return;
   if (!hasRig(asset) && (!isSkeletonAlone(asset) || movingSkeleton(asset).jointNode.empty())) {
     asset.warnings.add("no-skeleton", "there is no skeleton, so no joint gets the target's name, root or axes");
     return;
   }
   const AccessorSweep unused(asset);
-  TargetMaker(asset, target).make();
+  TargetMaker(asset, target).make(known);
   unused.sweep(asset);
 }
 

@@ -7,6 +7,7 @@
 #include "limber/actions/export/bone_axes.h"
 #include "limber/actions/export/bone_names.h"
 #include "limber/actions/export/name_style.h"
+#include "limber/character/anatomy/skeleton_reading.h"
 #include "limber/document/asset.h"
 #include "limber/document/fbx/export_fbx.h"
 #include "limber/skeleton/motion.h"
@@ -41,7 +42,9 @@ const EngineTarget& findTarget(std::string_view name);
 // A skeleton alone, which a motion has (isSkeletonAlone, movingSkeleton), is a model without a surface. Every asset for
 // the target "gltf" stays as it is; so does one that has neither a rig nor such a skeleton, with the warning
 // "no-skeleton". Throws as readAnatomy does.
-void toTarget(Asset& asset, const EngineTarget& target);
+//
+// known  a reading of the skeleton, if there is one
+void toTarget(Asset& asset, const EngineTarget& target, const SkeletonReading& known = Skeleton());
 
 // The same for a motion: joints are where they were in every frame. Keys are single precision afterwards.
 void toTarget(Motion& motion, const EngineTarget& target);

@@ -118,7 +118,7 @@ class Prepared {
     copy_ = asset.clone();
     copy_.warnings = {};
     if (dropsClips) copy_.document.animations.clear();
-    toTarget(copy_, target);
+    toTarget(copy_, target, options.reading);
     warnings_ = std::move(copy_.warnings);
     asset_ = &copy_;
   }

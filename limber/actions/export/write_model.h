@@ -17,6 +17,7 @@ namespace limber {
 
 struct WriteModelOptions {
   std::string target = std::string(kPlainTarget);  // a name of engineTargets()
+  SkeletonReading reading = Skeleton();            // of the model's skeleton, if there is one
   std::optional<std::string> clip;                 // of formats that hold one; none: the document's first
   bool isStill = false;                            // formats that hold one clip get none
   std::optional<FbxUnit> fbxUnit;                  // none: the target's

@@ -108,7 +108,8 @@ Index bodyJoint(const SkeletonReading& skeleton) {
   return skeleton.skeleton().joints.empty() ? 0 : skeleton.pieces().pelvis.value_or(0);
 }
 
-std::vector<ClipEditReport> editClips(Asset& asset, std::span<const std::string> names, const ClipEdits& edits) {
+std::vector<ClipEditReport> editClips(Asset& asset, std::span<const std::string> names, const ClipEdits& edits,
+                                      const SkeletonReading& known) {
   std::vector<ClipEditReport> reports;
   if (names.empty() || !edits.any()) return reports;
   std::vector<Index> animations;
@@ -133,11 +134,12 @@ std::vector<ClipEditReport> editClips(Asset& asset, std::span<const std::string>
     for (const Index a : animations) clips.push_back(all[a]);
   }
   const Skeleton& skeleton = moving.skeleton;
+  const SkeletonReading reading = known.of(skeleton);
   const CarriedPoints carried = edits.tolerance ? carriedBy(rooted.character) : CarriedPoints();
   for (Clip& clip : clips) {
     ClipEditReport report;
     report.clip = clip.name;
-    clip = edited(rooted.character.reading(), std::move(clip), rooted.root, edits, report);
+    clip = edited(reading, std::move(clip), rooted.root, edits, report);
     if (edits.tolerance) {
       ReducedClip reduced = reduceKeys(skeleton, clip, carried, {*edits.tolerance, true});
       report.keysBefore = reduced.keysBefore;

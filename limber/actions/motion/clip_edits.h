@@ -43,7 +43,10 @@ Index bodyJoint(const SkeletonReading& skeleton);
 // "root-weights" where vertices follow it besides other joints: these move by as much of the travel as their weight
 // says. What the clips took before leaves the file. Without a skin the ends of bones count as the surface. Throws Error
 // kBadArgument where a name is no animation's, and as addRootJoint, extractRootMotion and resampleClip do.
-std::vector<ClipEditReport> editClips(Asset& asset, std::span<const std::string> names, const ClipEdits& edits);
+//
+// known  a reading of the document's skeleton, if there is one
+std::vector<ClipEditReport> editClips(Asset& asset, std::span<const std::string> names, const ClipEdits& edits,
+                                      const SkeletonReading& known = Skeleton());
 
 // The same for all clips of a motion. The tolerance has no meaning there and is left out.
 std::vector<ClipEditReport> editClips(Motion& motion, const ClipEdits& edits);

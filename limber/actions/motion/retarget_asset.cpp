@@ -87,7 +87,8 @@ CharacterClips retargetedClips(const Character& character, const Motion& given, 
   if (!canMove(asset)) throw Error(ErrorCode::kUnsupported, "the model has no rig to move", asset.name);
   if (given.clips.empty()) throw Error(ErrorCode::kUnsupported, "holds no motion", given.name);
   Motion body = bodyOf(given, options);
-  const SkeletonReading source(body.skeleton);
+  const SkeletonReading source =
+      options.matches ? options.matches->reading(body.skeleton) : SkeletonReading(body.skeleton);
   const Motion motion = asItRests(std::move(body), source);
   const Skeleton& target = character.skeleton();
   const SkeletonMap map = mapFor(motion, source, character.reading(), options);

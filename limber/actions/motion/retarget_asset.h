@@ -20,7 +20,7 @@ struct RetargetAssetOptions {
   std::optional<std::string> mapJson;  // joints matched as this map says (skeleton_map.h)
   bool unlikeBodies = false;           // as matchSkeletons; with a map that map says
   std::string body = {};               // of a motion of several: which moves the character (motionOfBody)
-  SkeletonMatches* matches = nullptr;  // of several characters, each skeleton's made once; null: made anew
+  SkeletonMatches* matches = nullptr;  // of several motions or characters, each skeleton's made once; null: made anew
   Quat turn = Quat::Identity();        // of the clips, about the origin (standUpright)
 };
 

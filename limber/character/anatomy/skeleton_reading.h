@@ -18,6 +18,8 @@ class SkeletonReading {
   bool hasJointsOf(const Skeleton& other) const;
   // And, bit for bit, the same rest pose? Then its axes and sizes are this one's, too.
   bool isOf(const Skeleton& other) const;
+  // This reading where it is of that skeleton, else one of which nothing is made yet.
+  SkeletonReading of(const Skeleton& other) const { return isOf(other) ? *this : SkeletonReading(other); }
   // readAnatomy of the rest pose; throws Error as it does.
   const Anatomy& anatomy() const;
   const BodyPieces& pieces() const;

@@ -23,6 +23,16 @@ TEST(SkeletonReading, IsReadOnce) {
   EXPECT_EQ(reading.anatomy().parts.size(), readAnatomy(chain()).parts.size());
 }
 
+TEST(SkeletonReading, OfItsOwnSkeletonIsItself) {
+  const SkeletonReading reading(chain());
+  EXPECT_EQ(&reading.of(chain()).anatomy(), &reading.anatomy());
+  Skeleton other = chain();
+  other.joints[2].rest.translation.y() += 1e-15;
+  const SkeletonReading ofOther = reading.of(other);
+  EXPECT_NE(&ofOther.anatomy(), &reading.anatomy());
+  EXPECT_TRUE(ofOther.isOf(other));
+}
+
 TEST(SkeletonReading, KnowsItsSkeletonToTheBit) {
   const SkeletonReading reading(chain());
   EXPECT_TRUE(reading.isOf(chain()));

@@ -6,7 +6,7 @@ namespace limber {
 
 namespace {
 
-// Matches; 16 and more; that are kept at once: bounds memory. The oldest go, so that a thousand bodies of as many
+// Matches, and readings; 16 and more; that are kept at once: bounds memory. The oldest matches go, so that a thousand bodies of as many
 // builds need no more memory. A key and a map of 100 joints take some 40 KB.
 constexpr std::size_t kMaxKept = 256;
 
@@ -49,6 +49,14 @@ std::shared_ptr<SkeletonMatches::Entry> SkeletonMatches::entryOf(std::string key
     byAge_.pop_front();
   }
   return made;
+}
+
+SkeletonReading SkeletonMatches::reading(const Skeleton& skeleton) {
+  std::string key;
+  addBytes(key, skeleton);
+  const std::lock_guard lock(mutex_);
+  if (readings_.size() >= kMaxKept) readings_.clear();
+  return readings_.try_emplace(std::move(key), skeleton).first->second;
 }
 
 SkeletonMap SkeletonMatches::match(const SkeletonReading& source, const SkeletonReading& target, bool unlikeBodies,

@@ -1,4 +1,4 @@
-// Matches of skeletons, each made once.
+// Readings and matches of skeletons, each made once.
 #pragma once
 
 #include <deque>
@@ -21,7 +21,10 @@ class SkeletonMatches {
   SkeletonMap match(const SkeletonReading& source, const SkeletonReading& target, bool unlikeBodies,
                     const Pose* sourcePose = nullptr);
 
-  // How many were made.
+  // A reading of the skeleton, which others have who ask for one of the same.
+  SkeletonReading reading(const Skeleton& skeleton);
+
+  // How many matches were made.
   std::size_t made() const;
 
  private:
@@ -32,6 +35,7 @@ class SkeletonMatches {
   std::shared_ptr<Entry> entryOf(std::string key);
 
   mutable std::mutex mutex_;  // guards the rest
+  std::map<std::string, SkeletonReading> readings_;
   std::map<std::string, std::shared_ptr<Entry>> entries_;
   std::deque<std::string> byAge_;  // keys, the oldest first
   std::size_t made_ = 0;

@@ -33,6 +33,16 @@ TEST(SkeletonMatches, AreMadeOnceForEachPairAndAsWithoutThem) {
   EXPECT_EQ(matches.made(), 3u);
 }
 
+TEST(SkeletonMatches, OneReadingOfEachSkeleton) {
+  Skeleton person = practiceHumanoid();
+  SkeletonMatches matches;
+  const SkeletonReading first = matches.reading(person);
+  EXPECT_EQ(&matches.reading(Skeleton(person)).anatomy(), &first.anatomy());
+  person.joints.back().rest.translation.x() += 1e-9;
+  const SkeletonReading other = matches.reading(person);
+  EXPECT_NE(&other.anatomy(), &first.anatomy());
+}
+
 TEST(SkeletonMatches, ReadInAnotherPoseAreAnotherMatch) {
   const Skeleton person = practiceHumanoid();
   Pose pose = restPose(person);
