@@ -10,22 +10,13 @@
 #include <vector>
 
 #include "limber/character/anatomy/names/humanoid_words.h"
+#include "limber/core/text/split_text.h"
 
 namespace limber {
 
 namespace {
 
 using detail::BodyWord;
-
-std::vector<std::string_view> splitAtSpaces(std::string_view text) {
-  std::vector<std::string_view> words;
-  while (!text.empty()) {
-    const std::size_t end = std::min(text.find(' '), text.size());
-    if (end > 0) words.push_back(text.substr(0, end));
-    text.remove_prefix(std::min(end + 1, text.size()));
-  }
-  return words;
-}
 
 constexpr std::size_t kBodyWords = static_cast<std::size_t>(BodyWord::kLittle) + 1;  // of BodyWord
 
@@ -53,6 +44,44 @@ enum ExtraWord {
   kMetapodial
 };
 static_assert(kBodyWords + kMetapodial + 1 == kJointWords);
+
+constexpr std::size_t numberOf(BodyWord word) {
+  return static_cast<std::size_t>(word);
+}
+constexpr std::size_t numberOf(ExtraWord word) {
+  return kBodyWords + static_cast<std::size_t>(word);
+}
+
+// The words of roles; tips and helpers have marks instead.
+constexpr std::pair<JointRole, std::size_t> kRoleWords[] = {{JointRole::kRoot, numberOf(kRoot)},
+                                                            {JointRole::kAttachment, numberOf(kCloth)},
+                                                            {JointRole::kHips, numberOf(BodyWord::kHips)},
+                                                            {JointRole::kTrunk, numberOf(BodyWord::kTrunk)},
+                                                            {JointRole::kSpineToHead, numberOf(BodyWord::kTrunk)},
+                                                            {JointRole::kNeck, numberOf(BodyWord::kNeck)},
+                                                            {JointRole::kHead, numberOf(BodyWord::kHead)},
+                                                            {JointRole::kJaw, numberOf(BodyWord::kJaw)},
+                                                            {JointRole::kEye, numberOf(BodyWord::kEye)},
+                                                            {JointRole::kCollar, numberOf(BodyWord::kCollar)},
+                                                            {JointRole::kUpperArm, numberOf(BodyWord::kUpperArm)},
+                                                            {JointRole::kLowerArm, numberOf(BodyWord::kLowerArm)},
+                                                            {JointRole::kHand, numberOf(BodyWord::kHand)},
+                                                            {JointRole::kLegBase, numberOf(BodyWord::kHip)},
+                                                            {JointRole::kUpperLeg, numberOf(BodyWord::kUpperLeg)},
+                                                            {JointRole::kLowerLeg, numberOf(BodyWord::kLowerLeg)},
+                                                            {JointRole::kHock, numberOf(kMetapodial)},
+                                                            {JointRole::kPalm, numberOf(kMetapodial)},
+                                                            {JointRole::kFoot, numberOf(BodyWord::kFoot)},
+                                                            {JointRole::kToes, numberOf(BodyWord::kToes)},
+                                                            {JointRole::kThumb, numberOf(BodyWord::kThumb)},
+                                                            {JointRole::kIndex, numberOf(BodyWord::kIndex)},
+                                                            {JointRole::kMiddle, numberOf(BodyWord::kMiddle)},
+                                                            {JointRole::kRing, numberOf(BodyWord::kRing)},
+                                                            {JointRole::kLittle, numberOf(BodyWord::kLittle)},
+                                                            {JointRole::kTail, numberOf(kTail)},
+                                                            {JointRole::kHair, numberOf(kHair)},
+                                                            {JointRole::kEar, numberOf(kEar)},
+                                                            {JointRole::kWing, numberOf(kWing)}};
 
 // In the languages that artists write them in; words that also mean a part of the body are left out.
 struct ExtraWords {
@@ -115,7 +144,7 @@ std::optional<ExtraWord> extraWordOf(const std::string& word) {
   static const std::unordered_map<std::string_view, ExtraWord> kMeanings = [] {
     std::unordered_map<std::string_view, ExtraWord> meanings;
     for (const ExtraWords& row : kExtraWords) {
-      for (const std::string_view each : splitAtSpaces(row.words)) meanings.emplace(each, row.meaning);
+      for (const std::string_view each : wordsIn(row.words)) meanings.emplace(each, row.meaning);
     }
     return meanings;
   }();
@@ -127,7 +156,7 @@ std::optional<ExtraWord> containedWordOf(std::string_view name) {
   const auto isForeign = [](char c) { return static_cast<unsigned char>(c) > 0x7f; };
   if (std::none_of(name.begin(), name.end(), isForeign)) return std::nullopt;
   for (const ExtraWords& row : kContained) {
-    for (const std::string_view each : splitAtSpaces(row.words)) {
+    for (const std::string_view each : wordsIn(row.words)) {
       if (name.find(each) != std::string_view::npos) return row.meaning;
     }
   }
@@ -205,102 +234,16 @@ std::string_view readNameOf(const Joint& joint) {
 JointWords wordsOfRole(const NamedRole& role) {
   JointWords words;
   words.side = role.side;
-  const auto body = [&](BodyWord word) { words.word = static_cast<std::size_t>(word); };
-  const auto extra = [&](ExtraWord word) { words.word = kBodyWords + static_cast<std::size_t>(word); };
-  switch (role.role) {
-    case JointRole::kRoot:
-      extra(kRoot);
-      break;
-    case JointRole::kHelper:
-    case JointRole::kTip:
-      words.marks[static_cast<std::size_t>(role.role == JointRole::kTip ? NameMark::kEnd : NameMark::kHelper)] = true;
-      break;
-    case JointRole::kAttachment:
-      extra(kCloth);
-      break;
-    case JointRole::kHips:
-      body(BodyWord::kHips);
-      break;
-    case JointRole::kTrunk:
-    case JointRole::kSpineToHead:
-      body(BodyWord::kTrunk);
-      break;
-    case JointRole::kNeck:
-      body(BodyWord::kNeck);
-      break;
-    case JointRole::kHead:
-      body(BodyWord::kHead);
-      break;
-    case JointRole::kJaw:
-      body(BodyWord::kJaw);
-      break;
-    case JointRole::kEye:
-      body(BodyWord::kEye);
-      break;
-    case JointRole::kCollar:
-      body(BodyWord::kCollar);
-      break;
-    case JointRole::kUpperArm:
-      body(BodyWord::kUpperArm);
-      break;
-    case JointRole::kLowerArm:
-      body(BodyWord::kLowerArm);
-      break;
-    case JointRole::kHand:
-      body(BodyWord::kHand);
-      break;
-    case JointRole::kLegBase:
-      body(BodyWord::kHip);
-      break;
-    case JointRole::kUpperLeg:
-      body(BodyWord::kUpperLeg);
-      break;
-    case JointRole::kLowerLeg:
-      body(BodyWord::kLowerLeg);
-      break;
-    case JointRole::kHock:
-    case JointRole::kPalm:
-      extra(kMetapodial);
-      break;
-    case JointRole::kFoot:
-      body(BodyWord::kFoot);
-      break;
-    case JointRole::kToes:
-      body(BodyWord::kToes);
-      break;
-    case JointRole::kThumb:
-      body(BodyWord::kThumb);
-      break;
-    case JointRole::kIndex:
-      body(BodyWord::kIndex);
-      break;
-    case JointRole::kMiddle:
-      body(BodyWord::kMiddle);
-      break;
-    case JointRole::kRing:
-      body(BodyWord::kRing);
-      break;
-    case JointRole::kLittle:
-      body(BodyWord::kLittle);
-      break;
-    case JointRole::kTail:
-      extra(kTail);
-      break;
-    case JointRole::kHair:
-      extra(kHair);
-      break;
-    case JointRole::kEar:
-      extra(kEar);
-      break;
-    case JointRole::kWing:
-      extra(kWing);
-      break;
+  if (role.role == JointRole::kTip) words.marks[static_cast<std::size_t>(NameMark::kEnd)] = true;
+  if (role.role == JointRole::kHelper) words.marks[static_cast<std::size_t>(NameMark::kHelper)] = true;
+  for (const auto& [known, word] : kRoleWords) {
+    if (known == role.role) words.word = word;
   }
   return words;
 }
 
 bool saysHips(std::string_view name) {
-  return readJointWords(name).word == static_cast<std::size_t>(BodyWord::kHips);
+  return readJointWords(name).word == numberOf(BodyWord::kHips);
 }
 
 bool saysMetapodial(std::string_view name) {
@@ -342,8 +285,7 @@ std::vector<std::optional<NamedPartner>> partnersByName(const Skeleton& skeleton
 }
 
 std::optional<Index> fingerOfWord(std::size_t word) {
-  constexpr auto kFirst = static_cast<std::size_t>(BodyWord::kThumb),
-                 kLast = static_cast<std::size_t>(BodyWord::kLittle);
+  constexpr auto kFirst = numberOf(BodyWord::kThumb), kLast = numberOf(BodyWord::kLittle);
   return word >= kFirst && word <= kLast ? std::optional(static_cast<Index>(word - kFirst)) : std::nullopt;
 }
 
@@ -371,7 +313,7 @@ JointWords readJointWords(std::string_view name) {
     return words;
   }
   if (extra) {
-    words.word = kBodyWords + static_cast<std::size_t>(*extra);
+    words.word = numberOf(*extra);
     return words;
   }
   const detail::BodyName bare = detail::readBodyName(rest);

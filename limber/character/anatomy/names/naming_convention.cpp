@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "limber/character/anatomy/joint_tree.h"
+#include "limber/core/text/split_text.h"
 
 namespace limber {
 
@@ -73,16 +74,6 @@ PlainName plainNameOf(std::string_view name) {
     plain.text.push_back(static_cast<char>(std::tolower(static_cast<unsigned char>(c))));
   }
   return plain;
-}
-
-std::vector<std::string_view> wordsIn(std::string_view names) {
-  std::vector<std::string_view> words;
-  while (!names.empty()) {
-    const std::size_t end = std::min(names.find(' '), names.size());
-    if (end > 0) words.push_back(names.substr(0, end));
-    names.remove_prefix(std::min(end + 1, names.size()));
-  }
-  return words;
 }
 
 bool isNumbered(std::string_view pattern) {
@@ -208,37 +199,59 @@ std::vector<PlainName> plainNames(const Skeleton& skeleton) {
   return names;
 }
 
+// What each role says of a joint.
+struct RoleMeaning {
+  JointRole role;
+  std::optional<PartState> state = {};
+  std::optional<int> orderInLimb = {};  // of segments, from the body to the limb's end; none for what is no segment
+  std::optional<int> coreBit = {};      // of a core joint of the left side (coreBit())
+};
+
+constexpr std::array kRoleMeanings = {RoleMeaning{JointRole::kRoot, PartState::kOther},
+                                      RoleMeaning{JointRole::kHelper, PartState::kOther},
+                                      RoleMeaning{JointRole::kAttachment, PartState::kAttachment},
+                                      RoleMeaning{JointRole::kHips, PartState::kTrunk, {}, 0},
+                                      RoleMeaning{JointRole::kTrunk, PartState::kTrunk, {}, 1},
+                                      RoleMeaning{JointRole::kSpineToHead, PartState::kTrunk, {}, 1},
+                                      RoleMeaning{JointRole::kNeck, PartState::kNeck},
+                                      RoleMeaning{JointRole::kHead, PartState::kHead, {}, 2},
+                                      RoleMeaning{JointRole::kJaw, PartState::kJaw},
+                                      RoleMeaning{JointRole::kEye, PartState::kEye},
+                                      RoleMeaning{JointRole::kTip},
+                                      RoleMeaning{JointRole::kCollar, PartState::kArmBase, 0},
+                                      RoleMeaning{JointRole::kUpperArm, PartState::kArmUpper, 1, 9},
+                                      RoleMeaning{JointRole::kLowerArm, PartState::kArmMiddle, 2, 11},
+                                      RoleMeaning{JointRole::kHand, PartState::kArmEnd, 4, 13},
+                                      RoleMeaning{JointRole::kLegBase, PartState::kLegBase, 0},
+                                      RoleMeaning{JointRole::kUpperLeg, PartState::kLegUpper, 1, 3},
+                                      RoleMeaning{JointRole::kLowerLeg, PartState::kLegMiddle, 2, 5},
+                                      RoleMeaning{JointRole::kHock, PartState::kLegHock, 3},
+                                      RoleMeaning{JointRole::kFoot, PartState::kLegEnd, 4, 7},
+                                      RoleMeaning{JointRole::kToes, PartState::kLegToes, 5},
+                                      RoleMeaning{JointRole::kPalm, PartState::kFinger},
+                                      RoleMeaning{JointRole::kThumb, PartState::kFinger},
+                                      RoleMeaning{JointRole::kIndex, PartState::kFinger},
+                                      RoleMeaning{JointRole::kMiddle, PartState::kFinger},
+                                      RoleMeaning{JointRole::kRing, PartState::kFinger},
+                                      RoleMeaning{JointRole::kLittle, PartState::kFinger},
+                                      RoleMeaning{JointRole::kTail, PartState::kTail, {}, 24},
+                                      RoleMeaning{JointRole::kHair, PartState::kHair},
+                                      RoleMeaning{JointRole::kEar, PartState::kEar},
+                                      RoleMeaning{JointRole::kWing, PartState::kWing, {}, 25}};
+
+constexpr const RoleMeaning& meaningOf(JointRole role) {
+  return kRoleMeanings[static_cast<std::size_t>(role)];
+}
+static_assert(std::all_of(kRoleMeanings.begin(), kRoleMeanings.end(),
+                          [](const RoleMeaning& row) { return &row == &meaningOf(row.role); }));
+
 // A bit for each core joint; none for others.
 std::uint32_t coreBit(const NamedRole& named) {
-  const int side = named.side == Side::kRight ? 1 : 0;
-  const auto limb = [&](int segment) { return 1u << (3 + 2 * segment + side); };
-  switch (named.role) {
-    case JointRole::kHips:
-      return 1;
-    case JointRole::kTrunk:
-    case JointRole::kSpineToHead:
-      return 2;
-    case JointRole::kHead:
-      return 4;
-    case JointRole::kUpperLeg:
-      return limb(named.pair == 1 ? 6 : 0);
-    case JointRole::kLowerLeg:
-      return limb(named.pair == 1 ? 7 : 1);
-    case JointRole::kFoot:
-      return limb(named.pair == 1 ? 8 : 2);
-    case JointRole::kUpperArm:
-      return limb(3);
-    case JointRole::kLowerArm:
-      return limb(4);
-    case JointRole::kHand:
-      return limb(5);
-    case JointRole::kTail:
-      return 1u << 24;
-    case JointRole::kWing:
-      return 1u << (25 + side);
-    default:
-      return 0;
-  }
+  constexpr int kHindLegs = 12;  // from the bits of the fore legs, or of the only pair, to those of the hind legs
+  const auto& [role, state, order, bit] = meaningOf(named.role);
+  if (!bit) return 0;
+  const bool isSided = order || role == JointRole::kWing, isLeg = order && role >= JointRole::kLegBase;
+  return 1u << (*bit + (isSided && named.side == Side::kRight ? 1 : 0) + (isLeg && named.pair == 1 ? kHindLegs : 0));
 }
 
 // Whether enough of a body is named: an upper and a lower leg and, of people, arm, of animals two pairs of legs.
@@ -371,31 +384,7 @@ class Finder {
   std::vector<bool> hasOwnPrefix_;  // #conventions, whether some joint has the prefix of its files
 };
 
-// Order of a limb's segments from the body to its end; none for what is no segment.
-std::optional<int> orderInLimb(JointRole role) {
-  switch (role) {
-    case JointRole::kCollar:
-    case JointRole::kLegBase:
-      return 0;
-    case JointRole::kUpperArm:
-    case JointRole::kUpperLeg:
-      return 1;
-    case JointRole::kLowerArm:
-    case JointRole::kLowerLeg:
-      return 2;
-    case JointRole::kHock:
-      return 3;
-    case JointRole::kHand:
-    case JointRole::kFoot:
-      return 4;
-    case JointRole::kToes:
-      return 5;
-    default:
-      return std::nullopt;
-  }
-}
-
-constexpr int kLowerSegment = 3;  // orderInLimb; hands and feet may be roots of their own, as for inverse kinematics
+constexpr int kLowerSegment = 3;  // orderInLimb: hands and feet may be roots of their own, as for inverse kinematics
 
 bool isOfArm(JointRole role) {
   return role >= JointRole::kCollar && role <= JointRole::kHand;
@@ -486,14 +475,14 @@ class TreeCheck {
 
   bool isAttachedRight(Index joint) const {
     const NamedRole& own = *match_.roles[joint];
-    const std::optional<int> order = orderInLimb(own.role);
+    const std::optional<int> order = meaningOf(own.role).orderInLimb;
     bool isJoined = false;
     const bool isCenter = own.role == JointRole::kHips || own.role == JointRole::kTrunk ||
                           own.role == JointRole::kNeck || own.role == JointRole::kHead;
     for (std::optional<Index> up = tree_.parent(joint); up; up = tree_.parent(*up)) {
       if (!match_.roles[*up]) continue;
       const NamedRole& above = *match_.roles[*up];
-      const std::optional<int> orderAbove = orderInLimb(above.role);
+      const std::optional<int> orderAbove = meaningOf(above.role).orderInLimb;
       if (isCenter && (orderAbove || isFinger(above.role))) return false;
       if (isCenter && rankInCenter(above.role) > rankInCenter(own.role)) return false;
       if (isFinger(own.role) && orderAbove && !(isOfArm(above.role) && above.side == own.side)) return false;
@@ -511,7 +500,7 @@ class TreeCheck {
   // Whether the skeleton has a segment of the same limb that comes before it.
   bool isBelowAnother(const NamedRole& own, int order) const {
     return std::any_of(match_.roles.begin(), match_.roles.end(), [&](const std::optional<NamedRole>& other) {
-      const std::optional<int> before = other ? orderInLimb(other->role) : std::nullopt;
+      const std::optional<int> before = other ? meaningOf(other->role).orderInLimb : std::nullopt;
       if (!before || *before == 0 || *before >= order) return false;
       return other->side == own.side && other->pair == own.pair && isOfArm(other->role) == isOfArm(own.role);
     });
@@ -568,63 +557,7 @@ std::optional<Vec3> meanPosition(std::span<const std::optional<NamedRole>> joint
 }
 
 std::optional<PartState> stateOf(JointRole role) {
-  switch (role) {
-    case JointRole::kHips:
-    case JointRole::kTrunk:
-    case JointRole::kSpineToHead:
-      return PartState::kTrunk;
-    case JointRole::kNeck:
-      return PartState::kNeck;
-    case JointRole::kHead:
-      return PartState::kHead;
-    case JointRole::kJaw:
-      return PartState::kJaw;
-    case JointRole::kEye:
-      return PartState::kEye;
-    case JointRole::kCollar:
-      return PartState::kArmBase;
-    case JointRole::kUpperArm:
-      return PartState::kArmUpper;
-    case JointRole::kLowerArm:
-      return PartState::kArmMiddle;
-    case JointRole::kHand:
-      return PartState::kArmEnd;
-    case JointRole::kLegBase:
-      return PartState::kLegBase;
-    case JointRole::kUpperLeg:
-      return PartState::kLegUpper;
-    case JointRole::kLowerLeg:
-      return PartState::kLegMiddle;
-    case JointRole::kHock:
-      return PartState::kLegHock;
-    case JointRole::kFoot:
-      return PartState::kLegEnd;
-    case JointRole::kToes:
-      return PartState::kLegToes;
-    case JointRole::kPalm:
-    case JointRole::kThumb:
-    case JointRole::kIndex:
-    case JointRole::kMiddle:
-    case JointRole::kRing:
-    case JointRole::kLittle:
-      return PartState::kFinger;
-    case JointRole::kTail:
-      return PartState::kTail;
-    case JointRole::kHair:
-      return PartState::kHair;
-    case JointRole::kEar:
-      return PartState::kEar;
-    case JointRole::kWing:
-      return PartState::kWing;
-    case JointRole::kAttachment:
-      return PartState::kAttachment;
-    case JointRole::kRoot:
-    case JointRole::kHelper:
-      return PartState::kOther;
-    case JointRole::kTip:
-      break;
-  }
-  return std::nullopt;
+  return meaningOf(role).state;
 }
 
 std::string conventionName(const NamingConvention& convention, JointRole role, Side side, std::size_t number,
