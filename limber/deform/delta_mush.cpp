@@ -32,9 +32,7 @@ struct MushFrame {
 void smoothRange(const DeltaMushSurface& surface, const Vec3f* from, Vec3f* to, std::size_t begin, std::size_t end) {
   for (std::size_t v = begin; v < end; ++v) {
     Vec3f flow = Vec3f::Zero();
-    for (Index e = surface.begin[v]; e < surface.begin[v + 1]; ++e) {
-      flow += surface.flows[e] * (from[surface.neighbours[e]] - from[v]);
-    }
+    for (const MushNeighbour& next : surface.neighbours.of(v)) flow += next.flow * (from[next.vertex] - from[v]);
     to[v] = from[v] + surface.step * flow;
   }
 }
@@ -103,12 +101,11 @@ void addDetail(const MushFrame& frame, std::size_t begin, std::size_t end) {
     const Mat3 stretch = blendedStretch(frame, static_cast<Index>(v));
     Mat3 fit = Mat3::Zero();
     double size = 0;
-    for (Index e = surface.begin[v]; e < surface.begin[v + 1]; ++e) {
-      const Index k = surface.neighbours[e];
+    for (const auto& [k, flow] : surface.neighbours.of(v)) {
       const Vec3 edge = (surface.smoothed[k] - surface.smoothed[v]).cast<double>();
       const Vec3 moved = edge + (frame.from[k] - frame.from[v]).cast<double>(), stretched = stretch * edge;
-      fit += static_cast<double>(surface.flows[e]) * moved * stretched.transpose();
-      size += static_cast<double>(surface.flows[e]) * stretched.squaredNorm();
+      fit += static_cast<double>(flow) * moved * stretched.transpose();
+      size += static_cast<double>(flow) * stretched.squaredNorm();
     }
     Quat rotation(blendedRotation(frame, static_cast<Index>(v)));
     rotation.normalize();
@@ -148,23 +145,16 @@ void writeRange(const MushFrame& frame, std::size_t begin, std::size_t end) {
 
 // Of each vertex its neighbours and how much of it each is.
 void connectNeighbours(const SmoothingSurface& smooth, DeltaMushSurface& surface) {
-  std::vector<std::vector<std::pair<Index, double>>> flows(smooth.vertexCount());
-  for (int column = 0; column < smooth.stiffness.cols(); ++column) {
-    for (Eigen::SparseMatrix<double>::InnerIterator it(smooth.stiffness, column); it; ++it) {
-      const Index a = static_cast<Index>(column), b = static_cast<Index>(it.row());
-      if (a == b || !(it.value() < 0)) continue;
-      flows[a].emplace_back(b, -it.value() / smooth.diagonal[column]);
-      flows[b].emplace_back(a, -it.value() / smooth.diagonal[it.row()]);
+  surface.neighbours = Grouped<MushNeighbour>(smooth.vertexCount(), [&](const auto& visit) {
+    for (int column = 0; column < smooth.stiffness.cols(); ++column) {
+      for (Eigen::SparseMatrix<double>::InnerIterator it(smooth.stiffness, column); it; ++it) {
+        const Index a = static_cast<Index>(column), b = static_cast<Index>(it.row());
+        if (a == b || !(it.value() < 0)) continue;
+        visit(a, {b, static_cast<float>(-it.value() / smooth.diagonal[column])});
+        visit(b, {a, static_cast<float>(-it.value() / smooth.diagonal[it.row()])});
+      }
     }
-  }
-  surface.begin.push_back(0);
-  for (const auto& row : flows) {
-    for (const auto& [neighbour, flow] : row) {
-      surface.neighbours.push_back(neighbour);
-      surface.flows.push_back(static_cast<float>(flow));
-    }
-    surface.begin.push_back(static_cast<Index>(surface.neighbours.size()));
-  }
+  });
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "limber/core/grouped.h"
 #include "limber/deform/deformer.h"
 
 namespace limber {
@@ -13,15 +14,18 @@ struct DeltaMushOptions {
   int maxSmoothings = 100;  // where the surface is so fine that the reach takes more, it is smoothed less
 };
 
+struct MushNeighbour {
+  Index vertex;
+  float flow;  // those of all neighbours of a vertex sum to 1
+};
+
 // The welded surface (SmoothingSurface), its neighbourhoods, and what smoothing takes from it at rest.
 struct DeltaMushSurface : DeformPreparation {
-  std::vector<Index> weldedVertex;  // #V
-  std::vector<Vec3f> positions;     // #S, as bound
-  SkinWeights weights;              // #S
-  std::vector<Index> begin;         // #S + 1, into the two below
-  std::vector<Index> neighbours;    // #E
-  std::vector<float> flows;         // #E, those of a vertex sum to 1
-  std::vector<Vec3f> smoothed;      // #S, positions after the smoothings
+  std::vector<Index> weldedVertex;    // #V
+  std::vector<Vec3f> positions;       // #S, as bound
+  SkinWeights weights;                // #S
+  Grouped<MushNeighbour> neighbours;  // #S
+  std::vector<Vec3f> smoothed;        // #S, positions after the smoothings
   float step = 0;
   int smoothings = 0;
   Index jointCount = 0;
