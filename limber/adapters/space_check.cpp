@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "limber/core/error.h"
+#include "limber/geometry/mesh/model_box.h"
 
 namespace limber {
 
@@ -127,14 +128,6 @@ std::pair<std::size_t, double> worstOffset(const std::vector<JointOffset>& offse
 }
 
 }  // namespace
-
-Box surfaceBox(const TriMesh& mesh) {
-  Box box;
-  for (const Triangle& t : mesh.triangles) {
-    for (const Index v : t) box.add(mesh.position(v));
-  }
-  return box;
-}
 
 void checkSameBox(const Box& returned, const Box& own, const std::string& where) {
   const Vec3 a = returned.size(), b = own.size();

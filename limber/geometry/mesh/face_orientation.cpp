@@ -111,11 +111,7 @@ class FaceReverser {
   int raysLeaving(const Patch& patch) {
     if (!surface_) {
       surface_ = std::make_unique<Bvh>(mesh_);
-      Box box;
-      for (const Triangle& t : mesh_.triangles) {
-        for (const Index v : t) box.add(mesh_.position(v));
-      }
-      reach_ = 2 * box.diagonal();
+      reach_ = 2 * surfaceBox(mesh_).diagonal();
       margin_ = kRayMargin * modelBox(mesh_).diagonal();
     }
     const std::size_t count = std::min(kRayFaces, patch.triangles.size());

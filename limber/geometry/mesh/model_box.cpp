@@ -64,6 +64,14 @@ void addBox(Box& box, const Box& other) {
 
 }  // namespace
 
+Box surfaceBox(const TriMesh& mesh) {
+  Box box;
+  for (const Triangle& t : mesh.triangles) {
+    for (const Index v : t) box.add(mesh.position(v));
+  }
+  return box;
+}
+
 Box modelBox(const TriMesh& mesh) {
   Box all;
   if (mesh.triangles.empty()) {

@@ -7,6 +7,7 @@
 #include "limber/core/error.h"
 #include "limber/core/parallel.h"
 #include "limber/core/text/numbers.h"
+#include "limber/geometry/mesh/model_box.h"
 
 namespace limber {
 
@@ -46,10 +47,7 @@ void sortInParallel(std::span<Coded> items) {
 }
 
 std::vector<Coded> codesOf(const TriMesh& mesh) {
-  Box box;
-  for (const Triangle& t : mesh.triangles) {
-    for (const Index v : t) box.add(mesh.position(v));
-  }
+  const Box box = surfaceBox(mesh);
   const double scale = box.longestSide() > 0 ? ((1 << kLevels) - 1) / box.longestSide() : 0;
   std::vector<Coded> codes(mesh.triangleCount());
   parallelFor(codes.size(), 8192, [&](std::size_t begin, std::size_t end) {

@@ -5,6 +5,7 @@
 
 #include "limber/core/parallel.h"
 #include "limber/geometry/mesh/areas.h"
+#include "limber/geometry/mesh/model_box.h"
 #include "limber/geometry/mesh/normals.h"
 #include "limber/rigging/transfer/elastic_surface.h"
 #include "limber/rigging/transfer/facing_surface.h"
@@ -63,11 +64,7 @@ class Registration {
  public:
   Registration(const TriMesh& source, std::span<const VertexPair> links, const TriMesh& target)
       : moved_(source), target_(target), onTarget_(target), targetPoints_(pointsOf(target)), elastic_(source, links) {
-    Box box;
-    for (const Triangle& t : target.triangles) {
-      for (const Index v : t) box.add(target.position(v));
-    }
-    side_ = box.longestSide();
+    side_ = surfaceBox(target).longestSide();
     for (Index v = 0; v < source.vertexCount(); ++v) positions_.push_back(source.position(v));
     pulls_.resize(positions_.size());
     goals_.resize(positions_.size());

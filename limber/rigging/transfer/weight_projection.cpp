@@ -4,6 +4,7 @@
 
 #include "limber/core/error.h"
 #include "limber/core/parallel.h"
+#include "limber/geometry/mesh/model_box.h"
 #include "limber/geometry/mesh/normals.h"
 
 namespace limber {
@@ -14,14 +15,6 @@ namespace {
 // all, or than this part of the box's diagonal.
 constexpr double kMuchFarther = 4, kNearEnough = 0.01;
 constexpr std::size_t kProjectionGrain = 256;
-
-double diagonalOf(const TriMesh& mesh) {
-  Box box;
-  for (const Triangle& t : mesh.triangles) {
-    for (const Index v : t) box.add(mesh.position(v));
-  }
-  return box.diagonal();
-}
 
 bool hasWeights(const SkinWeights& weights, Index v) {
   const std::span<const float> of = weights.weightsOf(v);
@@ -80,7 +73,8 @@ void storeInfluences(std::vector<WeightedJoint>& influences, Index vertex, SkinW
 
 }  // namespace
 
-SurfaceProjector::SurfaceProjector(const TriMesh& source) : surface_(source), near_(kNearEnough * diagonalOf(source)) {}
+SurfaceProjector::SurfaceProjector(const TriMesh& source)
+    : surface_(source), near_(kNearEnough * surfaceBox(source).diagonal()) {}
 
 SurfacePoint SurfaceProjector::at(const Vec3& position, const Vec3& normal) const {
   const SurfacePoint nearest = surface_.nearest(position);

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "limber/core/rotation_fit.h"
+#include "limber/geometry/mesh/model_box.h"
 #include "limber/geometry/mesh/normals.h"
 #include "limber/rigging/transfer/facing_surface.h"
 
@@ -30,14 +31,6 @@ std::vector<SurfaceSample> samplesOf(const TriMesh& mesh) {
     if (normals[v].norm() > 0) samples.push_back({mesh.position(v), normals[v].normalized()});
   }
   return samples;
-}
-
-Box boxOf(const TriMesh& mesh) {
-  Box box;
-  for (const Triangle& t : mesh.triangles) {
-    for (const Index v : t) box.add(mesh.position(v));
-  }
-  return box;
 }
 
 struct PointPair {
@@ -99,13 +92,13 @@ double extentAlong(const TriMesh& mesh, const Vec3& axis) {
 }
 
 Affine wholeSimilarity(const TriMesh& source, const TriMesh& target, const Quat& turn, const Vec3& up) {
-  const Box goal = boxOf(target);
+  const Box goal = surfaceBox(target);
   TriMesh turned = source;
   for (Vec3f& p : turned.positions) p = (turn * p.cast<double>()).cast<float>();
   const double height = extentAlong(turned, up), far = kFar * goal.longestSide();
   Affine map = Affine::Identity();
   map.linear() = (height > 0 ? extentAlong(target, up) / height : 1.0) * turn.toRotationMatrix();
-  map.translation() = goal.center() - map.linear() * (turn.conjugate() * boxOf(turned).center());
+  map.translation() = goal.center() - map.linear() * (turn.conjugate() * surfaceBox(turned).center());
 
   const Affine first = map;
   const FacingSurface onSource(source), onTarget(target);
@@ -143,7 +136,7 @@ LimbAlignment alignWhole(std::span<const Affine> globals, const Affine& similari
 }
 
 double surfacesApart(const TriMesh& source, const TriMesh& target) {
-  const double side = boxOf(target).longestSide(), far = kFar * side;
+  const double side = surfaceBox(target).longestSide(), far = kFar * side;
   if (!(side > 0)) return 0;
   const double square = squareApart(samplesOf(source), FacingSurface(target), far) +
                         squareApart(samplesOf(target), FacingSurface(source), far);
