@@ -22,10 +22,11 @@ void shortenPaths(std::span<const Node> sources, std::vector<Distance>& distance
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
   for (const Node node : sources) queue.emplace(distances[node], node);
   while (!queue.empty()) {
-    const auto [distance, at] = queue.top();
+    const Distance distance = queue.top().first;
+    const Node at = queue.top().second;
     queue.pop();
     if (distance > distances[at]) continue;
-    forEachNeighbour(at, [&, distance = distance, at = at](Node next, Distance length) {
+    forEachNeighbour(at, [&](Node next, Distance length) {
       const Distance further = distance + length;
       if (!(further < distances[next])) return;
       distances[next] = further;
