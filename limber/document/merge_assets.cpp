@@ -27,10 +27,6 @@ struct ExtensionList {
 constexpr std::array<ExtensionList, 2> kExtensionLists = {
     {{"KHR_lights_punctual", "lights"}, {"KHR_materials_variants", "variants"}}};
 
-bool isPlacedByJoints(const gltf::Node& node) {
-  return node.skin && node.children.empty();
-}
-
 // Erases the extension from all objects within `value`.
 void eraseExtensionWithin(Json& value, const std::string& name) {
   if (!value.is_structured()) return;

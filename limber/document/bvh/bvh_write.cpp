@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "limber/core/known_error.h"
+#include "limber/core/sort_unique.h"
 #include "limber/core/text/numbers.h"
 #include "limber/core/text/printable.h"
 #include "limber/skeleton/chain.h"
@@ -269,8 +270,7 @@ double bvhFrameRate(const Motion& motion, std::size_t clip) {
   };
   addTimes(motion.clips[clip].translations);
   addTimes(motion.clips[clip].rotations);
-  std::sort(times.begin(), times.end());
-  times.erase(std::unique(times.begin(), times.end()), times.end());
+  sortUnique(times);
   if (times.size() > 2) times.pop_back();  // a clip may end between two frames
   for (int finer = 1; finer <= kMaxRefinement && finer * rate <= kMaxRate; ++finer) {
     const auto isFrame = [&](float time) {

@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "limber/core/file/read_bounds.h"
+#include "limber/core/sort_unique.h"
 #include "limber/document/gltf/accessor.h"
 #include "limber/document/rig/pose_io.h"
 #include "limber/document/scene/mirrored_scale.h"
@@ -29,11 +30,6 @@ namespace {
 constexpr const char *kTranslation = "translation", *kRotation = "rotation", *kScale = "scale";
 constexpr double kSameTransform = 1e-6;  // of a length or in radians: the same but for rounding
 constexpr float kStanding = 1e-6f;       // likewise, of a node's own value
-
-void sortUnique(std::vector<float>& times) {
-  std::sort(times.begin(), times.end());
-  times.erase(std::unique(times.begin(), times.end()), times.end());
-}
 
 template <typename Value>
 void addKey(Track<Value>& track, float time, const Value& value) {

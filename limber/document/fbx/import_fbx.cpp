@@ -231,8 +231,7 @@ class FbxConverter {
     for (std::size_t j = 0; j < skin.joints.size(); ++j) {
       Affine inverseBind = skin.inverseBinds[j];
       inverseBind.translation() *= convention_.scale;
-      const Mat4 matrix = (inverseBind * convention_.axes.inverse()).matrix();
-      for (int i = 0; i < 16; ++i) inverseBinds.push_back(static_cast<float>(matrix(i % 4, i / 4)));
+      appendMatrix(inverseBind * convention_.axes.inverse(), inverseBinds);
       bound.joints.push_back(nodeOf_[skin.joints[j]].value());
     }
     bound.inverseBindMatrices = addFloatAccessor(asset_, inverseBinds, 16);

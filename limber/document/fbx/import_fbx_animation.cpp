@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "limber/core/file/read_bounds.h"
+#include "limber/core/sort_unique.h"
 #include "limber/document/gltf/accessor.h"
 
 namespace limber {
@@ -214,8 +215,7 @@ struct ClipRange {
 
   std::vector<std::int64_t> keysOf(std::vector<std::int64_t> ticks) const {
     if (ticks.empty()) return ticks;
-    std::sort(ticks.begin(), ticks.end());
-    ticks.erase(std::unique(ticks.begin(), ticks.end()), ticks.end());
+    sortUnique(ticks);
     const auto begin = std::lower_bound(ticks.begin(), ticks.end(), start),
                end = std::upper_bound(ticks.begin(), ticks.end(), stop);
     std::vector<std::int64_t> result(begin, end);
@@ -260,16 +260,10 @@ class ClipWriter {
       return;
     }
     const auto components = path == TrackPath::kWeights ? 1 : static_cast<Index>(width);
-    gltf::AnimationSampler sampler;
-    sampler.output = addFloatAccessor(asset_, values, components);
-    sampler.input = inputOf(track.times);
-    sampler.interpolation = track.interpolation;
-    gltf::AnimationChannel channel;
-    channel.sampler = addElement(animation_.samplers, std::move(sampler));
-    channel.target.node = node;
     constexpr std::array<const char*, 4> kPaths = {"translation", "rotation", "scale", "weights"};
-    channel.target.path = kPaths[static_cast<std::size_t>(path)];
-    animation_.channels.push_back(std::move(channel));
+    const Index output = addFloatAccessor(asset_, values, components);
+    const Index sampler = addElement(animation_.samplers, {{}, inputOf(track.times), output, track.interpolation});
+    animation_.channels.push_back({{}, sampler, {{}, node, kPaths[static_cast<std::size_t>(path)]}});
   }
 
   void finish() {

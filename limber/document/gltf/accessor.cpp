@@ -125,6 +125,10 @@ Index addFloatAccessor(Asset& asset, std::span<const float> values, Index compon
   return index;
 }
 
+void appendMatrix(const Affine& affine, std::vector<float>& values) {
+  for (int i = 0; i < 16; ++i) values.push_back(static_cast<float>(affine.matrix()(i % 4, i / 4)));
+}
+
 void setBounds(Asset& asset, Index index) {
   const AccessorLayout layout = accessorLayout(asset, index);
   const std::size_t components = layout.info.components;

@@ -41,6 +41,9 @@ Index addAccessor(Asset& asset, const AccessorInfo& info, ByteSpan bytes, Index 
 Index addFloatAccessor(Asset& asset, std::span<const float> values, Index components, Index target = 0,
                        bool withMinMax = false);
 
+// Appends the 16 numbers of a matrix as glTF stores them, column after column.
+void appendMatrix(const Affine& affine, std::vector<float>& values);
+
 // Writes "min" and "max" as the accessor's data have them (raw values, before normalisation); takes them out where
 // there are no elements or not only finite ones.
 void setBounds(Asset& asset, Index accessor);

@@ -98,14 +98,9 @@ class AnimationImporter {
 
   void addTrack(Index node, const char* path, Index components, const Track& track) {
     if (track.times.empty()) return;
-    gltf::AnimationSampler sampler;
-    sampler.output = addFloatAccessor(asset_, track.values, components);
-    sampler.input = input(track.times);
-    gltf::AnimationChannel channel;
-    channel.sampler = addElement(animation_.samplers, std::move(sampler));
-    channel.target.node = node;
-    channel.target.path = path;
-    animation_.channels.push_back(std::move(channel));
+    const Index output = addFloatAccessor(asset_, track.values, components);
+    const Index sampler = addElement(animation_.samplers, {{}, input(track.times), output});
+    animation_.channels.push_back({{}, sampler, {{}, node, path}});
   }
 
   // Most tracks of a clip have the same times: they share one accessor.

@@ -151,8 +151,7 @@ class SceneConverter {
     std::vector<float> inverseBinds;
     gltf::Skin bound;
     for (std::size_t j = 0; j < skin.joints.size(); ++j) {
-      const Mat4 matrix = scaledAffine(skin.inverseBinds[j], scale_).matrix();
-      for (int i = 0; i < 16; ++i) inverseBinds.push_back(static_cast<float>(matrix(i % 4, i / 4)));
+      appendMatrix(scaledAffine(skin.inverseBinds[j], scale_), inverseBinds);
       bound.joints.push_back(nodeOf_.at(skin.joints[j]));
     }
     bound.inverseBindMatrices = addFloatAccessor(asset_, inverseBinds, 16);

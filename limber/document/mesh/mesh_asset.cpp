@@ -4,7 +4,7 @@
 
 namespace limber {
 
-Asset meshAsset(const TriMesh& mesh) {
+Asset meshAsset(const TriMesh& mesh, const std::string& name) {
   Asset asset;
   std::vector<float> positions;
   std::vector<Index> corners;
@@ -16,16 +16,16 @@ Asset meshAsset(const TriMesh& mesh) {
       asset, {static_cast<Index>(corners.size()), 1, ComponentType::kU32, false},
       {reinterpret_cast<const std::uint8_t*>(corners.data()), corners.size() * sizeof(Index)}, kIndexTarget);
   gltf::Mesh model;
-  model.name = "model";
+  model.name = name;
   model.primitives.push_back(std::move(primitive));
   gltf::Node node;
-  node.name = "model";
+  node.name = name;
   node.mesh = addElement(asset.document.meshes, std::move(model));
   gltf::Scene scene;
   scene.nodes = {addElement(asset.document.nodes, std::move(node))};
   asset.document.scene = addElement(asset.document.scenes, std::move(scene));
   asset.document.about.generator = "limber";
-  asset.name = "model.glb";
+  asset.name = name + ".glb";
   asset.format = "glb";
   return asset;
 }

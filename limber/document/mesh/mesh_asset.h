@@ -1,12 +1,14 @@
 // A mesh as a document.
 #pragma once
 
+#include <string>
+
 #include "limber/document/asset.h"
 #include "limber/geometry/mesh/tri_mesh.h"
 
 namespace limber {
 
-// With one node, "model", that shows the mesh; positions and triangles alone, in their order.
-Asset meshAsset(const TriMesh& mesh);
+// With one node that shows the mesh, both of that name; positions and triangles alone, in their order.
+Asset meshAsset(const TriMesh& mesh, const std::string& name = "model");
 
 }  // namespace limber

@@ -41,13 +41,6 @@ std::optional<Affine> inverseOf(const Affine& affine) {
   return inverse;
 }
 
-bool samePlacement(const Affine& a, const Affine& b) {
-  const double size = std::max(a.linear().cwiseAbs().maxCoeff(), b.linear().cwiseAbs().maxCoeff());
-  const double reach = std::max({size, a.translation().norm(), b.translation().norm()});
-  return (a.linear() - b.linear()).cwiseAbs().maxCoeff() <= kSamePlacement * size &&
-         (a.translation() - b.translation()).cwiseAbs().maxCoeff() <= kSamePlacement * reach;
-}
-
 // Is one placement a rigid motion of the other, up to a hundredth in scale?
 bool sameScale(const Affine& a, const Affine& b) {
   const double va = a.linear().determinant(), vb = b.linear().determinant();
@@ -139,8 +132,10 @@ class BindPoseBuilder {
     if (candidates.empty()) return Affine::Identity();
     std::size_t best = 0, bestVotes = 0;
     for (std::size_t i = 0; i < candidates.size(); ++i) {
-      const auto votes = static_cast<std::size_t>(std::count_if(
-          candidates.begin(), candidates.end(), [&](const Affine& c) { return samePlacement(candidates[i], c); }));
+      const auto votes =
+          static_cast<std::size_t>(std::count_if(candidates.begin(), candidates.end(), [&](const Affine& c) {
+            return samePlacement(candidates[i], c, kSamePlacement);
+          }));
       if (votes > bestVotes) {
         best = i;
         bestVotes = votes;
@@ -172,6 +167,13 @@ class BindPoseBuilder {
 
 }  // namespace
 
+bool samePlacement(const Affine& a, const Affine& b, double tolerance) {
+  const double size = std::max(a.linear().cwiseAbs().maxCoeff(), b.linear().cwiseAbs().maxCoeff());
+  const double reach = std::max({size, a.translation().norm(), b.translation().norm()});
+  return (a.linear() - b.linear()).cwiseAbs().maxCoeff() <= tolerance * size &&
+         (a.translation() - b.translation()).cwiseAbs().maxCoeff() <= tolerance * reach;
+}
+
 BindPose readBindPose(const Asset& asset, const SceneGraph& graph) {
   return BindPoseBuilder(asset, graph).build();
 }
@@ -199,7 +201,7 @@ std::vector<Index> skinsBoundElsewhere(const Asset& asset, const BindPose& pose)
     const SkinBinding binding = readSkinBinding(asset, skin);
     for (Index j = 0; j < binding.joints.size(); ++j) {
       const Affine placement = pose.nodeWorld[binding.joints[j]] * binding.inverseBinds[j];
-      if (!samePlacement(placement, pose.skinToWorld[skin])) elsewhere[skin].insert(j);
+      if (!samePlacement(placement, pose.skinToWorld[skin], kSamePlacement)) elsewhere[skin].insert(j);
     }
   }
   std::vector<bool> counts(asset.document.skins.size(), false);

@@ -29,6 +29,9 @@ struct BindPose {
 };
 BindPose readBindPose(const Asset& asset, const SceneGraph& graph);
 
+// Whether two placements differ by no more than that fraction of their size and distance from the origin.
+bool samePlacement(const Affine& a, const Affine& b, double tolerance);
+
 // The skins in use that were bound in another pose than that one: joints with weights are elsewhere by their inverse
 // binds than where nodeWorld has them, since another skin that has them was bound otherwise, or since the skin has no
 // inverse binds, which glTF reads as the identity. Their surface in the bind pose is what skinning makes of it there.

@@ -70,12 +70,14 @@ bool canMorph(const gltf::Document& document, Index node) {
 
 }  // namespace
 
-Vec3f turnNormal(const Mat3& linear, const Vec3f& normal) {
+Mat3 cofactorsOf(const Mat3& linear) {
   Mat3 cofactors;
-  cofactors.col(0) = linear.col(1).cross(linear.col(2));
-  cofactors.col(1) = linear.col(2).cross(linear.col(0));
-  cofactors.col(2) = linear.col(0).cross(linear.col(1));
-  const Vec3 turned = cofactors * normal.cast<double>();
+  for (int i = 0; i < 3; ++i) cofactors.col(i) = linear.col((i + 1) % 3).cross(linear.col((i + 2) % 3));
+  return cofactors;
+}
+
+Vec3f turnNormal(const Mat3& linear, const Vec3f& normal) {
+  const Vec3 turned = cofactorsOf(linear) * normal.cast<double>();
   const double length = turned.norm();
   return length > 0 ? Vec3f((turned / length).cast<float>()) : Vec3f(Vec3f::Zero());
 }

@@ -17,6 +17,9 @@ Pose readNodePose(const Asset& asset, const AssetSkeleton& skeleton);
 // when played. Throws Error kBadData naming the node where a root is below a node without an inverse (a scale of 0).
 void writeNodePose(Asset& asset, const AssetSkeleton& skeleton, const Pose& pose);
 
+// What a map does to directions at right angles to a surface, but for the sign of its determinant.
+Mat3 cofactorsOf(const Mat3& linear);
+
 // glTF's transform of a direction at right angles to the surface: by the cofactors of the linear part, of length 1 or
 // 0.
 Vec3f turnNormal(const Mat3& linear, const Vec3f& normal);

@@ -63,11 +63,7 @@ Maps vertexMaps(const std::vector<InfluenceSet>& sets, std::size_t vertexCount, 
 
 // What a map does to directions at right angles to the surface, which stay on their side where it mirrors.
 Mat3 normalMap(const Mat3& linear) {
-  Mat3 cofactors;
-  cofactors.col(0) = linear.col(1).cross(linear.col(2));
-  cofactors.col(1) = linear.col(2).cross(linear.col(0));
-  cofactors.col(2) = linear.col(0).cross(linear.col(1));
-  return linear.determinant() < 0 ? Mat3(-cofactors) : cofactors;
+  return linear.determinant() < 0 ? Mat3(-cofactorsOf(linear)) : cofactorsOf(linear);
 }
 
 // Moves the vertices of the meshes that one skin shows. Accessors that several primitives share stay shared.

@@ -21,10 +21,7 @@ namespace {
 constexpr double kSamePosition = 1e-5;
 
 bool near(const Affine& a, const Affine& b) {
-  const double size = std::max(a.linear().cwiseAbs().maxCoeff(), b.linear().cwiseAbs().maxCoeff());
-  const double reach = std::max({size, a.translation().norm(), b.translation().norm()});
-  return (a.linear() - b.linear()).cwiseAbs().maxCoeff() <= kSamePosition * size &&
-         (a.translation() - b.translation()).cwiseAbs().maxCoeff() <= kSamePosition * reach;
+  return samePlacement(a, b, kSamePosition);
 }
 
 class RigRemover {

@@ -98,8 +98,7 @@ class Reweighter {
       asset_.warnings.add("missing-inverse-binds", "skins without inverse bind matrices are given them");
     }
     for (std::size_t j = inverseBinds.size() / 16; j < nodes.size(); ++j) {
-      const Mat4 matrix = (inverseBindOf(nodes[j]) * pose_.skinToWorld[skin]).matrix();
-      for (int i = 0; i < 16; ++i) inverseBinds.push_back(static_cast<float>(matrix(i % 4, i / 4)));
+      appendMatrix(inverseBindOf(nodes[j]) * pose_.skinToWorld[skin], inverseBinds);
     }
     gltf::Skin& target = asset_.document.skins[skin];
     target.inverseBindMatrices = addFloatAccessor(asset_, inverseBinds, 16);

@@ -66,10 +66,7 @@ Index SkinnedNodes::addSkin(const SkinJoints& joints, const Affine& toWorld) {
 
   std::vector<float> inverseBinds;
   inverseBinds.reserve(16 * joints.toJoint.size());
-  for (const Affine& toJoint : joints.toJoint) {
-    const Mat4 matrix = (toJoint * toWorld).matrix();
-    for (int i = 0; i < 16; ++i) inverseBinds.push_back(static_cast<float>(matrix(i % 4, i / 4)));
-  }
+  for (const Affine& toJoint : joints.toJoint) appendMatrix(toJoint * toWorld, inverseBinds);
   if (!std::all_of(inverseBinds.begin(), inverseBinds.end(), [](float x) { return std::isfinite(x); })) {
     throw Error(ErrorCode::kBadData, "has inverse bind matrices that are not finite", "skin '" + joints.name + "'",
                 "the model lies too far from the origin or is scaled too much");

@@ -41,6 +41,8 @@ std::vector<Index> depthFirst(const std::vector<gltf::Node>& nodes, const std::v
   return order;
 }
 
+}  // namespace
+
 std::vector<Index> rootsOf(const SceneGraph& graph) {
   std::vector<Index> roots;
   for (Index n = 0; n < graph.nodeCount(); ++n) {
@@ -49,7 +51,9 @@ std::vector<Index> rootsOf(const SceneGraph& graph) {
   return roots;
 }
 
-}  // namespace
+bool isPlacedByJoints(const gltf::Node& node) {
+  return node.skin && node.children.empty();
+}
 
 std::vector<bool> animatedNodes(const gltf::Document& document) {
   std::vector<bool> animated(document.nodes.size(), false);

@@ -23,6 +23,12 @@ struct SceneGraph {
 // must have passed checkAsset (a tree, indices in range).
 SceneGraph readSceneGraph(const gltf::Document& document);
 
+// The nodes without a parent, in index order.
+std::vector<Index> rootsOf(const SceneGraph& graph);
+
+// A skinned mesh, which its joints move and no transform of a node: glTF ignores its own and those above it.
+bool isPlacedByJoints(const gltf::Node& node);
+
 // The transform of a node: its matrix, or its translation, rotation and scale.
 Affine nodeTransform(const gltf::Node& node);
 

@@ -9,27 +9,9 @@
 
 namespace limber {
 
-namespace {
-
-bool isPlacedByJoints(const gltf::Node& node) {
-  return node.skin && node.children.empty();
-}
-
-// What the document shows that has no scene.
-std::vector<Index> allRoots(const gltf::Document& document) {
-  const SceneGraph graph = readSceneGraph(document);
-  std::vector<Index> roots;
-  for (Index n = 0; n < graph.nodeCount(); ++n) {
-    if (!graph.parent[n]) roots.push_back(n);
-  }
-  return roots;
-}
-
-}  // namespace
-
 void turnScene(Asset& asset, const Quat& turn, const std::string& name) {
   gltf::Document& document = asset.document;
-  if (document.scenes.empty()) document.scenes.emplace_back().nodes = allRoots(document);
+  if (document.scenes.empty()) document.scenes.emplace_back().nodes = rootsOf(readSceneGraph(document));
   UniqueNames names;
   for (const gltf::Node& node : document.nodes) names.add(node.name);
   std::map<Index, Index> above;  // the turning node of each root that has one

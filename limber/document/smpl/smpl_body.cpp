@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 
 #include "limber/core/known_error.h"
-#include "limber/document/gltf/accessor.h"
+#include "limber/document/mesh/mesh_asset.h"
 #include "limber/document/rig/rig_io.h"
 #include "limber/document/scene/blend_shapes.h"
 #include "limber/document/smpl/smpl_arrays.h"
@@ -25,18 +25,18 @@ namespace {
 constexpr std::size_t kMaxShapes = 10;
 constexpr std::size_t kMaxInfluences = 8;
 
-std::vector<std::uint32_t> readCorners(const NpzFiles& files, std::size_t vertices) {
+std::vector<Triangle> readTriangles(const NpzFiles& files, std::size_t vertices) {
   const NpyArray array = neededSmplArray(files, "f");
   smplRowsOfThree(array, "f");
-  std::vector<std::uint32_t> corners;
+  std::vector<Triangle> triangles(array.values.size() / 3);
   for (std::size_t i = 0; i < array.values.size(); ++i) {
     const double corner = array.values[i];
     if (!(corner >= 0 && corner < static_cast<double>(vertices)) || corner != std::floor(corner)) {
       refuseSmplArray("f", fmt::format("triangle {} has a corner that is no vertex", i / 3));
     }
-    corners.push_back(static_cast<std::uint32_t>(corner));
+    triangles[i / 3][i % 3] = static_cast<Index>(corner);
   }
-  return corners;
+  return triangles;
 }
 
 NpyArray readWeightRows(const NpzFiles& files, std::size_t vertices) {
@@ -92,39 +92,19 @@ std::vector<BlendShape> readShapes(const NpzFiles& files, std::size_t vertices) 
   return shapes;
 }
 
-Asset surfaceAsset(const std::vector<Vec3>& vertices, const std::vector<std::uint32_t>& corners) {
-  Asset asset;
-  std::vector<float> positions;
-  for (const Vec3& v : vertices) {
-    for (const double x : v) positions.push_back(static_cast<float>(x));
-  }
-  gltf::Primitive primitive;
-  primitive.attributes.set("POSITION", addFloatAccessor(asset, positions, 3, kVertexTarget, true));
-  primitive.indices =
-      addAccessor(asset, {static_cast<Index>(corners.size()), 1, ComponentType::kU32, false},
-                  {reinterpret_cast<const std::uint8_t*>(corners.data()), 4 * corners.size()}, kIndexTarget);
-  gltf::Mesh mesh;
-  mesh.name = "body";
-  mesh.primitives.push_back(std::move(primitive));
-  gltf::Node node;
-  node.name = "body";
-  node.mesh = addElement(asset.document.meshes, std::move(mesh));
-  gltf::Scene scene;
-  scene.nodes = {addElement(asset.document.nodes, std::move(node))};
-  asset.document.scene = addElement(asset.document.scenes, std::move(scene));
-  return asset;
-}
-
 Asset bodyOf(const NpzFiles& files) {
   const std::vector<Vec3> vertices = smplVertices(files);
-  const std::vector<std::uint32_t> corners = readCorners(files, vertices.size());
+  TriMesh mesh;
+  for (const Vec3& vertex : vertices) mesh.positions.push_back(vertex.cast<float>());
+  mesh.triangles = readTriangles(files, vertices.size());
   const NpyArray rows = readWeightRows(files, vertices.size());
   const Skeleton skeleton = smplSkeleton(files, vertices);
   if (skeleton.jointCount() != rows.shape[1]) {
     refuseSmplArray("weights",
                     fmt::format("has {} joints where kintree_table has {}", rows.shape[1], skeleton.jointCount()));
   }
-  Asset asset = surfaceAsset(vertices, corners);
+  Asset asset = meshAsset(mesh, "body");
+  asset.document.about.generator.clear();  // another program made it
   const Geometry geometry = collectGeometry(asset);
   addBlendShapes(asset, geometry, readShapes(files, vertices.size()));
   attachRig(asset, geometry, skeleton, strongest(rows));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limber/core/sort_unique.h"
 #include "limber/skeleton/motion.h"
 
 namespace limber {
@@ -23,11 +24,6 @@ void addMoments(const std::vector<float>& times, Interpolation interpolation, st
     if (interpolation != Interpolation::kCubic) continue;
     for (double t = from + 1 / kRate; t < to - 0.5 / kRate; t += 1 / kRate) moments.push_back(t);
   }
-}
-
-void sortUnique(std::vector<double>& moments) {
-  std::sort(moments.begin(), moments.end());
-  moments.erase(std::unique(moments.begin(), moments.end()), moments.end());
 }
 
 // Empty where all tracks stand still.

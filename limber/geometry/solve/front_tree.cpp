@@ -7,6 +7,8 @@
 
 #include <Eigen/OrderingMethods>
 
+#include "limber/core/sort_unique.h"
+
 namespace limber {
 
 namespace {
@@ -144,8 +146,7 @@ class FrontGatherer {
     for (int p = entries_.first[begin]; p < entries_.first[end]; ++p) {
       if (entries_.row[p] >= end) front.rows.push_back(entries_.row[p]);
     }
-    std::sort(front.rows.begin(), front.rows.end());
-    front.rows.erase(std::unique(front.rows.begin(), front.rows.end()), front.rows.end());
+    sortUnique(front.rows);
     fronts_.push_back(std::move(front));
     zeros_.push_back(0);
   }

@@ -9,6 +9,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "limber/core/sort_unique.h"
 #include "limber/geometry/mesh/areas.h"
 #include "limber/geometry/mesh/bvh.h"
 #include "limber/geometry/mesh/face_orientation.h"
@@ -383,8 +384,7 @@ std::vector<Index> weldedFrom(const std::vector<bool>& isOfSource, const Prepare
   for (std::size_t source = 0; source < isOfSource.size(); ++source) {
     if (isOfSource[source]) vertices.push_back(prepared.weldedVertex[source]);
   }
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  sortUnique(vertices);
   return vertices;
 }
 

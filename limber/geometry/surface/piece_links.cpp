@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "limber/core/disjoint_sets.h"
+#include "limber/core/sort_unique.h"
 #include "limber/geometry/surface/point_tree.h"
 
 namespace limber {
@@ -21,8 +22,7 @@ class PieceLinker {
     refreshPieces();
     joinTouching();
     while (sets_.count() > 1) joinNearest();
-    std::sort(links_.begin(), links_.end());
-    links_.erase(std::unique(links_.begin(), links_.end()), links_.end());
+    sortUnique(links_);
     return std::move(links_);
   }
 

@@ -7,6 +7,7 @@
 #include <queue>
 #include <unordered_map>
 
+
 namespace limber {
 
 namespace {

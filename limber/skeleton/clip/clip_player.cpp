@@ -9,6 +9,7 @@
 
 #include "limber/core/error.h"
 #include "limber/core/float4.h"
+#include "limber/core/sort_unique.h"
 #include "limber/skeleton/clip/keys/key_rounding.h"
 
 namespace limber {
@@ -182,8 +183,7 @@ std::vector<float> ClipPlayer::Packed::packedTimes(std::size_t group) const {
     take(rotations[j]);
     take(scales[j]);
   }
-  std::sort(times.begin(), times.end());
-  times.erase(std::unique(times.begin(), times.end()), times.end());
+  sortUnique(times);
   if (times.empty()) times.push_back(0);
   return linear && times.size() <= kMaxKeys * most ? times : std::vector<float>();
 }

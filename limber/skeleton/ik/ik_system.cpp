@@ -7,6 +7,7 @@
 
 #include "limber/core/error.h"
 #include "limber/core/rotation.h"
+#include "limber/core/sort_unique.h"
 #include "limber/skeleton/chain.h"
 #include "limber/skeleton/ik/ik_task_rows.h"
 
@@ -164,8 +165,7 @@ void IkSystem::setUpNode(const Skeleton& skeleton, const JointLimits* limits, No
 void IkSystem::addEffectors(std::span<const IkTarget> targets) {
   std::vector<int> levels;
   for (const IkTarget& target : targets) levels.push_back(target.priority);
-  std::sort(levels.begin(), levels.end());
-  levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
+  sortUnique(levels);
   for (const IkTarget& target : targets) {
     Effector& effector = effectors.emplace_back();
     effector.node = nodeOf_[target.joint];

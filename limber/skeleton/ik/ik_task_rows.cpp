@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "limber/core/rotation.h"
+#include "limber/core/sort_unique.h"
 #include "limber/skeleton/ik/support_polygon.h"
 
 namespace limber {
@@ -233,8 +234,7 @@ IkTaskRows::IkTaskRows(const Skeleton& skeleton, std::span<const IkTask> tasks, 
   for (const PointMass& mass : masses_) totalMass_ += mass.mass;
   std::vector<int> priorities;
   for (const IkTask& task : tasks_) priorities.push_back(task.priority);
-  std::sort(priorities.begin(), priorities.end());
-  priorities.erase(std::unique(priorities.begin(), priorities.end()), priorities.end());
+  sortUnique(priorities);
   rowBegin_.resize(tasks_.size());
   rowCount_.resize(tasks_.size());
   levelOf_.resize(tasks_.size());

@@ -7,6 +7,7 @@
 
 #include "limber/core/error.h"
 #include "limber/core/parallel.h"
+#include "limber/core/sort_unique.h"
 #include "limber/skeleton/clip/keys/key_choice.h"
 #include "limber/skeleton/clip/keys/shared_times.h"
 #include "limber/skeleton/clip/tracks.h"
@@ -165,8 +166,7 @@ class KeyReducer {
       const auto lines = straightened(track);
       times.insert(times.end(), lines.times.begin(), lines.times.end());
     });
-    std::sort(times.begin(), times.end());
-    times.erase(std::unique(times.begin(), times.end()), times.end());
+    sortUnique(times);
     times_.assign(times.begin(), times.end());
   }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limber/core/sort_unique.h"
 #include "limber/skeleton/clip/keys/key_rounding.h"
 #include "limber/skeleton/clip/tracks.h"
 
@@ -13,12 +14,6 @@ namespace {
 constexpr float kSameScale = 5e-7f;  // relative: the same but for rounding
 constexpr double kAside = 0.2113;    // of the time between two keys: where a cubic is farthest from its middle's line
 constexpr int kMaxHalvings = 8;      // of the time between two keys
-
-std::vector<float> sorted(std::vector<float> times) {
-  std::sort(times.begin(), times.end());
-  times.erase(std::unique(times.begin(), times.end()), times.end());
-  return times;
-}
 
 }  // namespace
 
@@ -41,7 +36,8 @@ double sizeSeenFrom(const Skeleton& skeleton, std::optional<Index> joint) {
 }
 
 MovementKeys::MovementKeys(const MovingTransform& movement, std::vector<float> times, double size, double most) {
-  for (const float time : sorted(std::move(times))) {
+  sortUnique(times);
+  for (const float time : times) {
     const Key next{time, movement(time)};
     if (!keys_.empty()) divide(movement, {size, most}, Key(keys_.back()), next, 0);
     keys_.push_back(next);
