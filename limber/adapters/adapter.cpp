@@ -14,7 +14,6 @@
 #include "limber/adapters/job_limits.h"
 #include "limber/document/gltf/json_access.h"
 #include "limber/document/gltf/json_keys.h"
-#include "limber/document/gltf/json_text.h"
 
 namespace limber {
 
@@ -128,11 +127,9 @@ void checkPlaceholders(const JsonView& location, std::string_view text, AdapterK
   });
 }
 
-std::string requiredText(const JsonView& value) {
-  if (!value.exists() || !value.json().is_string() || value.json().get_ref<const std::string&>().empty()) {
-    value.fail("is not a text");
-  }
-  std::string text = value.json().get<std::string>();
+// For a command or a path.
+std::string argumentOf(const JsonView& value) {
+  std::string text = requiredText(value);
   if (text.find('\0') != std::string::npos) value.fail("holds a zero byte");
   return text;
 }
@@ -143,12 +140,12 @@ AdapterStep stepOf(const JsonView& entry, AdapterKind kind) {
   AdapterStep step;
   const JsonView command = entry.array("command");
   for (std::size_t i = 0; i < command.size(); ++i) {
-    step.command.push_back(requiredText(command[i]));
+    step.command.push_back(argumentOf(command[i]));
     checkPlaceholders(command[i], step.command.back(), kind);
   }
   if (step.command.empty()) entry.fail("has no command");
   if (const JsonView folder = entry.member("folder"); folder.exists()) {
-    step.folder = requiredText(folder);
+    step.folder = argumentOf(folder);
     checkPlaceholders(folder, step.folder.string(), kind);
   }
   return step;
@@ -222,7 +219,7 @@ void readOutput(const JsonView& output, Adapter& adapter) {
       fmt::format("output/{}{}", adapterFileStem(adapter.kind), adapterExtension(adapter.outputFormat));
   if (!output.exists()) return;
   if (const JsonView file = output.member("file"); file.exists()) {
-    adapter.outputFile = requiredText(file);
+    adapter.outputFile = argumentOf(file);
     const std::filesystem::path path(adapter.outputFile);
     const bool leaves = std::find(path.begin(), path.end(), "..") != path.end();
     if (path.is_absolute() || leaves) file.fail("does not lie in the run's folder, from which it is seen");
@@ -268,12 +265,7 @@ std::string_view adapterFileStem(AdapterKind kind) {
 
 Adapter adapterFromJson(std::string_view text, std::string name) {
   try {
-    Warnings warnings;
-    const Json json = parseJson(text, warnings);
-    if (!warnings.empty()) {
-      const Warning& first = warnings.items().front();
-      throw Error(ErrorCode::kBadData, first.message, first.where);
-    }
+    const Json json = parseStrictly(text);
     Adapter adapter = adapterOf(JsonView(json));
     adapter.name = std::move(name);
     return adapter;

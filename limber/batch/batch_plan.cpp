@@ -11,11 +11,11 @@
 
 #include "limber/adapters/job_limits.h"
 #include "limber/batch/path_pattern.h"
+#include "limber/core/file/file.h"
 #include "limber/core/text/list_lines.h"
 #include "limber/core/text/names.h"
 #include "limber/document/gltf/json_access.h"
 #include "limber/document/gltf/json_keys.h"
-#include "limber/document/gltf/json_text.h"
 #include "limber/document/utf8.h"
 #include "limber/study/study_input.h"
 
@@ -27,25 +27,10 @@ namespace {
 
 constexpr std::string_view kVersionKey = "limber_batch";
 
-std::string textOf(const JsonView& value) {
-  if (!value.exists() || !value.json().is_string() || value.json().get_ref<const std::string&>().empty()) {
-    value.fail("is not a text");
-  }
-  return value.json().get<std::string>();
-}
-
 std::vector<std::string> textsOf(const JsonView& list) {
   std::vector<std::string> texts;
-  for (std::size_t i = 0; i < list.size(); ++i) texts.push_back(textOf(list[i]));
+  for (std::size_t i = 0; i < list.size(); ++i) texts.push_back(requiredText(list[i]));
   return texts;
-}
-
-Json parsed(std::string_view text) {
-  Warnings warnings;
-  Json json = parseJson(text, warnings);
-  if (warnings.empty()) return json;
-  const Warning& first = warnings.items().front();
-  throw Error(ErrorCode::kBadData, first.message, first.where);
 }
 
 // Calls `take` for each line of a list; errors say which.
@@ -108,7 +93,7 @@ class EntryList {
     if (input.json().is_object()) {
       addObject(input, {});
     } else {
-      addName(textOf(input), input);
+      addName(requiredText(input), input);
     }
   }
 
@@ -122,7 +107,7 @@ class EntryList {
     object.requireObject();
     allowKeys(object, {"path", "sha256", "options"});
     BatchEntry entry;
-    entry.input = (listFolder / textOf(object.member("path"))).lexically_normal().generic_string();
+    entry.input = (listFolder / requiredText(object.member("path"))).lexically_normal().generic_string();
     entry.sha256 = object.text("sha256");
     constexpr std::size_t kDigits = 64;
     if (!entry.sha256.empty() &&
@@ -169,7 +154,7 @@ class EntryList {
       forEachLine(path, [&](std::string_view line) { addFile((listFolder / line).generic_string()); });
     } else if (extension == ".jsonl") {
       forEachLine(path, [&](std::string_view line) {
-        const Json json = parsed(line);
+        const Json json = parseStrictly(line);
         addObject(JsonView(json), listFolder);
       });
     } else {
@@ -254,7 +239,7 @@ std::vector<std::string> commandOf(const JsonView& list, std::span<const std::st
 }
 
 std::string extensionOf(const JsonView& value) {
-  std::string extension = textOf(value);
+  std::string extension = requiredText(value);
   if (extension.size() < 2 || extension.front() != '.' || extension.find_first_of("/\\") != std::string::npos) {
     value.fail("is no extension such as \".glb\"");
   }
@@ -303,7 +288,7 @@ BatchShard parseBatchShard(std::string_view text) {
 BatchPlan readBatchPlan(const fs::path& file, std::span<const std::string_view> commands, const fs::path& outputs) {
   const Bytes bytes = readFile(file);
   try {
-    const Json json = parsed({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    const Json json = parseStrictly({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     const fs::path folder = fs::absolute(file == "-" ? "plan" : file).parent_path();
     return planOf(JsonView(json), folder.lexically_normal(), commands, outputs);
   } catch (const Error& error) {

@@ -16,7 +16,6 @@
 #include "limber/deform/deformer.h"
 #include "limber/document/gltf/json_access.h"
 #include "limber/document/gltf/json_keys.h"
-#include "limber/document/gltf/json_text.h"
 #include "limber/motion/retarget/retarget_method.h"
 #include "limber/rigging/auto_rigger.h"
 #include "limber/rigging/template_rigger.h"
@@ -30,18 +29,11 @@ namespace {
 constexpr std::string_view kAll = "all", kVersionKey = "limber_study", kUsualSolver = "two-bone";
 constexpr std::size_t kMaxThreads = 1024;
 
-std::string textOf(const JsonView& value) {
-  if (!value.exists() || !value.json().is_string() || value.json().get_ref<const std::string&>().empty()) {
-    value.fail("is not a text");
-  }
-  return value.json().get<std::string>();
-}
-
 std::vector<std::string> textsOf(const JsonView& object, std::string_view key) {
   const JsonView list = object.array(key);
   std::vector<std::string> texts;
   for (std::size_t i = 0; i < list.size(); ++i) {
-    texts.push_back(textOf(list[i]));
+    texts.push_back(requiredText(list[i]));
     if (std::count(texts.begin(), texts.end(), texts.back()) > 1) list[i].fail("stands there twice");
   }
   return texts;
@@ -131,7 +123,7 @@ RigSetting settingOf(const JsonView& entry) {
   entry.requireObject();
   allowKeys(entry, {"name", "handles", "max_influences", "pieces", "template"});
   RigSetting setting;
-  setting.name = textOf(entry.member("name"));
+  setting.name = requiredText(entry.member("name"));
   const auto add = [&](std::string_view option, std::string value) {
     setting.arguments.insert(setting.arguments.end(), {std::string(option), std::move(value)});
   };
@@ -144,12 +136,12 @@ RigSetting settingOf(const JsonView& entry) {
     add("--max-influences", std::to_string(*influences));
   }
   if (const JsonView pieces = entry.member("pieces"); pieces.exists()) {
-    checkAt(pieces, textOf(pieces), findPieceMode);
-    add("--pieces", textOf(pieces));
+    checkAt(pieces, requiredText(pieces), findPieceMode);
+    add("--pieces", requiredText(pieces));
   }
   if (const JsonView name = entry.member("template"); name.exists()) {
-    checkAt(name, textOf(name), checkTemplateName);
-    add("--template", textOf(name));
+    checkAt(name, requiredText(name), checkTemplateName);
+    add("--template", requiredText(name));
   }
   return setting;
 }
@@ -206,7 +198,7 @@ std::vector<RigCombination> namedPairs(const JsonView& pairs, const std::vector<
     const JsonView pair = pairs[i];
     pair.requireObject();
     allowKeys(pair, {"rigger", "skinning", "deformer", "options"});
-    const std::string rigger = textOf(pair.member("rigger")), skinning = textOf(pair.member("skinning"));
+    const std::string rigger = requiredText(pair.member("rigger")), skinning = requiredText(pair.member("skinning"));
     checkAt(pair.member("rigger"), rigger, [&](const std::string& name) { methods.checkRigger(name); });
     checkAt(pair.member("skinning"), skinning, [&](const std::string& name) { methods.checkSkinning(name); });
     RigCombination one = methods.combination(rigger, skinning, {});
@@ -214,11 +206,11 @@ std::vector<RigCombination> namedPairs(const JsonView& pairs, const std::vector<
       const auto find = [&](const std::string& wanted) {
         one.setting = findByName(settings, "set of options", wanted);
       };
-      checkAt(name, textOf(name), find);
+      checkAt(name, requiredText(name), find);
       checkTogether(name, one, methods);
     }
     if (const JsonView deformer = pair.member("deformer"); deformer.exists()) {
-      one.deformer = textOf(deformer);
+      one.deformer = requiredText(deformer);
       checkAt(deformer, one.deformer, findDeformer);
     }
     const auto isSame = [&](const RigCombination& other) {
@@ -278,12 +270,13 @@ std::vector<RetargetCombination> retargetPairs(const JsonView& pairs, const Plan
     const JsonView pair = pairs[i];
     pair.requireObject();
     allowKeys(pair, {"method", "solver"});
-    const std::string method = textOf(pair.member("method"));
+    const std::string method = requiredText(pair.member("method"));
     checkAt(pair.member("method"), method, [&](const std::string& name) { methods.checkRetargeting(name); });
     const JsonView solver = pair.member("solver");
-    if (solver.exists()) checkAt(solver, textOf(solver), findIkMethod);
+    if (solver.exists()) checkAt(solver, requiredText(solver), findIkMethod);
     RetargetCombination one =
-        methods.retargetCombinations(method, {solver.exists() ? textOf(solver) : std::string(kUsualSolver)}).front();
+        methods.retargetCombinations(method, {solver.exists() ? requiredText(solver) : std::string(kUsualSolver)})
+            .front();
     if (solver.exists() && one.solver.empty()) {
       solver.fail(fmt::format("is of no use: '{}' solves for no limbs", method));
     }
@@ -332,7 +325,7 @@ StudyPlan planOf(const JsonView& root, const PlanMethods& methods) {
   if (root.count(kVersionKey) != 1) root.fail(fmt::format("has no \"{}\": 1", kVersionKey));
   allowKeys(root, {kVersionKey, "title", "rig", "retarget", "limits", "threads"});
   StudyPlan plan;
-  if (root.member("title").exists()) plan.title = textOf(root.member("title"));
+  if (root.member("title").exists()) plan.title = requiredText(root.member("title"));
   plan.rig = rigPlanOf(root.object("rig"), methods);
   plan.retarget = retargetPlanOf(root.object("retarget"), methods);
   readJobLimits(root.object("limits"), plan.limits);
@@ -348,12 +341,7 @@ StudyPlan planOf(const JsonView& root, const PlanMethods& methods) {
 
 StudyPlan studyPlanFromJson(std::string_view text, const std::vector<std::filesystem::path>& adapterFolders) {
   try {
-    Warnings warnings;
-    const Json json = parseJson(text, warnings);
-    if (!warnings.empty()) {
-      const Warning& first = warnings.items().front();
-      throw Error(ErrorCode::kBadData, first.message, first.where);
-    }
+    const Json json = parseStrictly(text);
     return planOf(JsonView(json), PlanMethods(adapterFolders));
   } catch (const Error& error) {
     throw error.within("study plan");
