@@ -410,21 +410,22 @@ void printLeftOut(const std::map<std::string, LeftOut>& makers) {
   const auto percent = [](std::size_t some, std::size_t all) {
     return all > 0 ? 100.0 * static_cast<double>(some) / static_cast<double>(all) : 0.0;
   };
+  Table table{{words("maker left out"), number("skeletons", 0), number("parts", 0), number("right, %", 1),
+               number("landmarks, %", 1), number("up and front, %", 1), number("names hidden: right, %", 1),
+               number("landmarks, %", 1), number("up and front, %", 1)}};
   const auto row = [&](const std::string& name, const LeftOut& score) {
     const AnatomyScore &a = score.named, &b = score.hidden;
-    fmt::print("| {} | {} | {} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} |\n", name, a.skeletons, a.parts,
-               percent(a.right, a.parts), percent(a.landmarksRight, a.landmarks), percent(a.axes, a.skeletons),
-               percent(b.right, b.parts), percent(b.landmarksRight, b.landmarks), percent(b.axes, b.skeletons));
+    table.add({name, a.skeletons, a.parts, percent(a.right, a.parts), percent(a.landmarksRight, a.landmarks),
+               percent(a.axes, a.skeletons), percent(b.right, b.parts), percent(b.landmarksRight, b.landmarks),
+               percent(b.axes, b.skeletons)});
   };
-  fmt::print(
-      "| maker left out | skeletons | parts | right, % | landmarks, % | up and front, % | names hidden: right, % | "
-      "landmarks, % | up and front, % |\n| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n");
   LeftOut all;
   for (const auto& [name, score] : makers) {
     row(name, score);
     all.add(score);
   }
   row("all", all);
+  fmt::print("{}", toMarkdown(table));
 }
 
 void writeWeights(const PartWeights& weights, const std::string& file) {

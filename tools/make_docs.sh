@@ -111,7 +111,7 @@ table_of_poses() {
   files=("${posed[@]/#/$work/posed_}")
   files=("${files[@]/%/.glb}")
   echo "| motion | at | named mean of ${#posed[@]} | best | worst | 0.4 sure and more |"
-  echo "|---|---|---|---|---|---|"
+  echo "| --- | --- | ---: | ---: | ---: | ---: |"
   for motion in cmu_daz_12_01_walk cmu_daz_09_01_run cmu_daz_05_02_dance_pirouette rokoko_dance cmu1_jumping_jacks \
     makehuman_zombie_walk cmu_daz_02_05_punch fair1_wave_hello; do
     for character in "${posed[@]}"; do

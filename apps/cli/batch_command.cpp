@@ -232,7 +232,7 @@ void runStatus(const BatchStatusArguments& arguments) {
   printWarnings(status.recordWarnings, arguments.quiet);
   if (!arguments.merged.empty()) writeFile(arguments.merged, asBytes(mergedBatchRecords(arguments.folder)));
   if (arguments.json) {
-    fmt::print("{}\n", dumpReport(toJson(status)));
+    printJson(toJson(status));
   } else {
     tell(status, Account(arguments.quiet, arguments.merged));
   }

@@ -6,12 +6,14 @@
 #include <filesystem>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "limber/core/counted.h"
 #include "limber/core/file/storage_error.h"
 #include "limber/core/parallel.h"
 #include "limber/core/text/names.h"
 #include "limber/core/text/printable.h"
+#include "limber/document/gltf/json_text.h"
 
 namespace limber::cli {
 
@@ -103,6 +105,12 @@ void checkBeside(const std::string& option, const std::string& path, const std::
   }
 }
 
+CLI::Option* addMarkdownOutput(CLI::App& command, std::string& output, std::string_view what) {
+  return command.add_option("-o,--output", output, fmt::format("{} to write, in Markdown; - is standard output", what))
+      ->type_name("FILE")
+      ->capture_default_str();
+}
+
 CLI::Validator notForPlans() {
   return CLI::Validator([](std::string&) { return std::string(); }, "", kNotForPlans);
 }
@@ -141,6 +149,10 @@ CLI::Validator momentOfClip() {
 
 void printText(std::string_view text) {
   fmt::print("{}", printableText(text));
+}
+
+void printJson(const Json& json) {
+  fmt::print("{}\n", dumpReport(json));
 }
 
 void writeText(const std::string& path, const std::string& text) {

@@ -76,6 +76,9 @@ void checkOutput(std::string_view path, const std::vector<std::string_view>& ext
 // CLI::ValidationError where it does, by whatever path.
 void checkBeside(const std::string& option, const std::string& path, const std::vector<std::string>& others);
 
+// -o for what is written in Markdown, "the table".
+CLI::Option* addMarkdownOutput(CLI::App& command, std::string& output, std::string_view what);
+
 // Marks an option that runs a program of the user's or names what is written beside the output: the user has it, a
 // batch's plan does not.
 CLI::Validator notForPlans();
@@ -92,6 +95,16 @@ CLI::Validator momentOfClip();
 // writeText. Not for JSON, where they would no longer say what they are: dumpReport escapes them.
 void printText(std::string_view text);
 void writeText(const std::string& path, const std::string& text);
+void printJson(const Json& json);
+// Figures, as JSON or as lines for people.
+template <typename Figures>
+void printReport(const Figures& figures, bool asJson) {
+  if (asJson) {
+    printJson(toJson(figures));
+  } else {
+    printText(toText(figures));
+  }
+}
 // Two texts, both or none; the first only where `pathBeside` is not empty.
 void writeTexts(const std::string& pathBeside, const std::string& beside, const std::string& path,
                 const std::string& text);

@@ -37,11 +37,7 @@ struct WeightsOptions {
 
 void runWeights(const WeightsOptions& options) {
   const WeightComparison comparison = compareWeights(readAsset(options.result), readAsset(options.truth));
-  if (options.json) {
-    fmt::print("{}\n", dumpReport(toJson(comparison)));
-  } else {
-    printText(toText(comparison));
-  }
+  printReport(comparison, options.json);
 }
 
 struct ModelFile {
@@ -52,11 +48,7 @@ struct ModelFile {
 void runModel(const ModelFile& options) {
   const Deformer& deformer = findDeformer(options.deformer);
   const ModelQuality quality = measureModel(readAsset(options.model), deformer);
-  if (options.json) {
-    fmt::print("{}\n", dumpReport(toJson(quality)));
-  } else {
-    printText(toText(quality));
-  }
+  printReport(quality, options.json);
 }
 
 struct AgreementFiles {
@@ -82,7 +74,7 @@ void runMeasures(const AgreementFiles& options) {
     throw Error(ErrorCode::kBadData, "no model was rigged in three ways and compared with a rig of its own",
                 options.cells.front(), "run a study of three methods or more over characters that artists rigged");
   }
-  writeText(options.output, agreementTable(agreements));
+  writeText(options.output, toMarkdown(agreementTable(agreements)));
 }
 
 struct RigFiles {
@@ -92,11 +84,7 @@ struct RigFiles {
 
 void runRig(const RigFiles& options) {
   const RigComparison comparison = compareRigs(readAsset(options.predicted), readAsset(options.truth));
-  if (options.json) {
-    fmt::print("{}\n", dumpReport(toJson(comparison)));
-  } else {
-    printText(toText(comparison));
-  }
+  printReport(comparison, options.json);
 }
 
 struct RiggersOptions {
@@ -216,10 +204,10 @@ void runRiggers(RiggersOptions options) {
   if (!options.sheet.empty()) {
     writeFile(options.sheet, encodePng(contactSheet(pictures, kSheetColumns, renderBackdrop(bonesOnSheet()))));
   }
-  writeTexts(options.each, eachTemplateTrial(trials), options.output,
-             isSideBySide     ? riggerTable(sideBySide)
-             : labels.empty() ? rigTable(rows)
-                              : templateTables(trials));
+  writeTexts(options.each, toTsv(eachTemplateTrial(trials)), options.output,
+             isSideBySide     ? toMarkdown(riggerTable(sideBySide))
+             : labels.empty() ? toMarkdown(rigTable(rows))
+                              : toMarkdown(templateTables(trials)));
   printWarnings(skipped, options.common.quiet);
 }
 
@@ -270,8 +258,8 @@ void runSkinning(SkinningOptions options) {
     methods.push_back({method, compareFolders(options, method, *progress, methods.empty() ? skipped : again)});
   }
   refuseNothing(methods.front().rows.empty(), skipped);
-  writeText(options.output,
-            methods.size() == 1 ? weightPage(methods.front().rows, references) : weightMethodTable(methods));
+  writeText(options.output, methods.size() == 1 ? weightPage(methods.front().rows, references)
+                                                : toMarkdown(weightMethodTable(methods)));
   printWarnings(skipped, options.common.quiet);
 }
 
@@ -303,7 +291,8 @@ void runIk(const SolverOptions& options) {
     const std::string plots = options.plots.empty() ? std::string() : folderFrom(options.page, options.plots);
     return writeText(options.page, ikPage(scores, plots == "." ? "" : plots));
   }
-  fmt::print("{}", options.json ? ikScoreJson(scores) : ikScoreTable(scores));
+  if (options.json) return printJson(toJson(scores));
+  fmt::print("{}", toMarkdown(ikScoreTable(scores)));
 }
 
 void addIk(CLI::App& evaluate) {
@@ -363,9 +352,7 @@ void addMeasures(CLI::App& evaluate) {
   CLI::App* command =
       evaluate.add_subcommand("measures", "Tell how far measures without a truth agree with those that know it");
   command->add_option("CELLS", options->cells, "cells.json of studies over characters that artists rigged")->required();
-  command->add_option("-o,--output", options->output, "the table to write, in Markdown; - is standard output")
-      ->type_name("FILE")
-      ->capture_default_str();
+  addMarkdownOutput(*command, options->output, "the table");
   command->footer(
       "For each measure of limber evaluate model and each one that knows the artist's rig: Spearman's rank "
       "correlation\n"
@@ -427,9 +414,7 @@ void addRiggers(CLI::App& evaluate) {
   command->add_option("--time", options->time, "at this moment of the clip, or of the first, in seconds")
       ->check(momentOfClip())
       ->type_name("S");
-  command->add_option("-o,--output", options->output, "the table to write, in Markdown; - is standard output")
-      ->type_name("FILE")
-      ->capture_default_str();
+  addMarkdownOutput(*command, options->output, "the table");
   options->common.addTo(*command);
   command->footer(
       "At a moment of a clip each character is what its own weights make of it, and its joints as they stand then are\n"
@@ -469,9 +454,7 @@ void addSkinning(CLI::App& evaluate) {
   CLI::App* command = evaluate.add_subcommand(
       "skinning", "Make the weights of folders of rigged models anew and compare with their own");
   command->add_option("FOLDER", options->folders, "folders of .glb and .gltf with artists' rigs")->required();
-  command->add_option("-o,--output", options->output, "the page to write, in Markdown; - is standard output")
-      ->type_name("FILE")
-      ->capture_default_str();
+  addMarkdownOutput(*command, options->output, "the page");
   command->add_option("--references", options->references, "another program's figures for the same files, as TSV")
       ->type_name("FILE");
   command
@@ -502,10 +485,10 @@ void runAnatomy(const AnatomyFiles& options) {
   Warnings skipped;
   const std::vector<LabelledSkeleton> bodies =
       labelledSkeletons({reinterpret_cast<const char*>(labels.data()), labels.size()}, options.data, skipped);
-  const std::string page = anatomyPage(bodies, *progress);
+  const std::vector<Table> tables = anatomyTables(bodies, *progress);
   progress.finish();
   printWarnings(skipped, options.common.quiet);
-  writeText(options.output, page);
+  writeText(options.output, toMarkdown(tables));
 }
 
 void addAnatomy(CLI::App& evaluate) {
@@ -514,9 +497,7 @@ void addAnatomy(CLI::App& evaluate) {
       evaluate.add_subcommand("anatomy", "Read the bodies of labelled skeletons and compare with the labels");
   command->add_option("LABELS", options->labels, "labels made by hand, such as docs/data/body_labels.json")->required();
   command->add_option("FOLDER", options->data, "where the labelled files are")->required();
-  command->add_option("-o,--output", options->output, "the tables to write, in Markdown; - is standard output")
-      ->type_name("FILE")
-      ->capture_default_str();
+  addMarkdownOutput(*command, options->output, "the tables");
   options->common.addTo(*command);
   command->footer("Example:\n  limber evaluate anatomy docs/data/body_labels.json ../shared/data -o anatomy.md");
   command->callback([options] { runAnatomy(*options); });

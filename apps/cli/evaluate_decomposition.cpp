@@ -45,7 +45,7 @@ void runDecomposition(const DecompositionArguments& arguments) {
     rows.insert(rows.end(), more.begin(), more.end());
   }
   refuseNothing(rows.empty(), skipped);
-  writeTexts(arguments.each, eachDecomposition(rows), arguments.output, decompositionTable(rows));
+  writeTexts(arguments.each, toTsv(eachDecomposition(rows)), arguments.output, toMarkdown(decompositionTable(rows)));
   printWarnings(skipped, arguments.common.quiet);
 }
 
@@ -59,9 +59,7 @@ void addDecompositionEvaluation(CLI::App& evaluate) {
   command->add_option("--each", arguments->each, "write the figures of each file, tab separated (.tsv)")
       ->check(notForPlans())
       ->type_name("FILE");
-  command->add_option("-o,--output", arguments->output, "the table to write, in Markdown; - is standard output")
-      ->type_name("FILE")
-      ->capture_default_str();
+  addMarkdownOutput(*command, arguments->output, "the table");
   arguments->common.addTo(*command);
   command->footer(
       "Of each file the longest clip, with as many bones as have weights in it. The error is the root mean square\n"

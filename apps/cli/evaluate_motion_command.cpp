@@ -3,6 +3,7 @@
 #include <string_view>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "command.h"
 #include "limber/actions/rig/stand_upright.h"
@@ -112,7 +113,7 @@ void run(const MotionEvaluationArguments& options) {
     const ShownJoints shownRight = shownJoints(truth.skeleton, right, setup.targetKinematics.toBody());
     metrics.jointError = jointErrorOf(setup, resultPlain.plain(right), toPlain, &shownRight, &shownTo);
   }
-  printText(options.json ? motionMetricsJson(metrics) : motionMetricsText(metrics));
+  printReport(metrics, options.json);
 }
 
 struct MatrixOptions {
@@ -141,8 +142,9 @@ void runMatrix(const MatrixOptions& options) {
   std::vector<AnswerScore> answers;
   if (trial.judge) answers = scoreAnswers(trial, *progress, skipped);
   if (!options.each.empty())
-    writeText(options.each, retargetScoresTsv(scores) + (trial.judge ? answersTsv(answers) : ""));
-  writeText(options.output, trial.judge ? judgeTable(scores, answers) : retargetMethodTable(scores));
+    writeText(options.each, toTsv(eachRetargetScore(scores)) + (trial.judge ? toTsv(eachAnswer(answers)) : ""));
+  writeText(options.output,
+            trial.judge ? toMarkdown(judgeTables(scores, answers)) : toMarkdown(retargetMethodTable(scores)));
   printWarnings(skipped, options.common.quiet);
 }
 
@@ -169,9 +171,7 @@ void addRetargetingEvaluation(CLI::App& evaluate) {
       ->check(CLI::Range(0, 1000).description(""))
       ->type_name("N")
       ->capture_default_str();
-  command->add_option("-o,--output", options->output, "the table to write, in Markdown; - is standard output")
-      ->type_name("FILE")
-      ->capture_default_str();
+  addMarkdownOutput(*command, options->output, "the table");
   command->add_option("--each", options->each, "write the figures of each pair, tab separated")
       ->check(notForPlans())
       ->type_name("FILE");

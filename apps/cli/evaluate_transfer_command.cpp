@@ -42,7 +42,7 @@ void runTransferTrials(const TransferTrialArguments& options) {
     isEmpty = isEmpty && folders.back().trials.empty();
   }
   refuseNothing(isEmpty, skipped);
-  writeTexts(options.each, eachTransferTrial(folders), options.output, transferTable(folders));
+  writeTexts(options.each, toTsv(eachTransferTrial(folders)), options.output, toMarkdown(transferTable(folders)));
   printWarnings(skipped, options.common.quiet);
 }
 
@@ -60,9 +60,7 @@ void addTransferEvaluation(CLI::App& evaluate) {
   command->add_option("--each", options->each, "write the figures of each pair, tab separated (.tsv)")
       ->check(notForPlans())
       ->type_name("FILE");
-  command->add_option("-o,--output", options->output, "the table to write, in Markdown; - is standard output")
-      ->type_name("FILE")
-      ->capture_default_str();
+  addMarkdownOutput(*command, options->output, "the table");
   options->common.addTo(*command);
   command->footer(
       "Every person of a folder loses its rig and takes those of others there: of some whose joints have the same "

@@ -1,11 +1,9 @@
 // limber evaluate votes: methods ranked by what people chose, two results at a time.
 #include <memory>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "command.h"
-#include "limber/document/gltf/json_text.h"
 #include "limber/study/ranking/vote_ranking.h"
 #include "vote_files.h"
 
@@ -28,9 +26,9 @@ void runVotes(const VotesArguments& arguments) {
   }
   const std::vector<VoteRanking> rankings = rankByVotes(votes);
   if (arguments.json) {
-    fmt::print("{}\n", dumpReport(toJson(rankings)));
+    printJson(toJson(rankings));
   } else {
-    writeText(arguments.output, voteTables(rankings));
+    writeText(arguments.output, toMarkdown(voteTables(rankings)));
   }
 }
 
@@ -42,10 +40,7 @@ void addVotesEvaluation(CLI::App& evaluate) {
       evaluate.add_subcommand("votes", "Rank methods by what people chose in the blind ballot of a study's page");
   command->add_option("VOTES", arguments->files, "votes.csv files that the page saved")->required();
   CLI::Option* json = command->add_flag("--json", arguments->json, "print JSON");
-  command->add_option("-o,--output", arguments->output, "the tables to write, in Markdown; - is standard output")
-      ->excludes(json)
-      ->type_name("FILE")
-      ->capture_default_str();
+  addMarkdownOutput(*command, arguments->output, "the tables")->excludes(json);
   command->footer(
       "chosen: share of a method's votes that went to it, \"alike\" half to each. strength: the chance that it is\n"
       "chosen beside a method of middling strength, whatever it happened to stand beside (Bradley-Terry), with the\n"

@@ -10,6 +10,7 @@
 #include "limber/document/gltf/json_text.h"
 #include "limber/document/read.h"
 #include "limber/evaluate/asset_info.h"
+#include "limber/report/table.h"
 
 namespace limber::cli {
 
@@ -220,9 +221,9 @@ void print(const std::string& file, const AssetInfo& info, bool withPositions) {
   printWarnings(info.warnings, false);
 }
 
-// As a table in Markdown, for docs/anatomy.md.
+// For docs/anatomy.md.
 void printConventions() {
-  fmt::print("| names of | hips, upper leg, lower arm, index finger | documented at |\n| --- | --- | --- |\n");
+  Table table{{words("names of"), words("hips, upper leg, lower arm, index finger"), words("documented at")}};
   for (const NamingConvention& convention : namingConventions()) {
     std::vector<std::string> names;
     const auto add = [&](JointRole role, Side side) {
@@ -234,8 +235,9 @@ void printConventions() {
     add(JointRole::kHips, Side::kCenter);
     add(JointRole::kSpineToHead, Side::kCenter);
     for (const JointRole role : {JointRole::kUpperLeg, JointRole::kLowerArm, JointRole::kIndex}) add(role, Side::kLeft);
-    fmt::print("| {} | {} | {} |\n", convention.name, joinNames(names), convention.documentation);
+    table.add({convention.name, joinNames(names), convention.documentation});
   }
+  fmt::print("{}", toMarkdown(table));
 }
 
 void run(const InfoArguments& options) {
@@ -243,7 +245,7 @@ void run(const InfoArguments& options) {
   if (options.input.empty()) throw CLI::RequiredError("FILE");
   const AssetInfo info = inspectAsset(readAsset(options.input));
   if (options.json) {
-    fmt::print("{}\n", dumpReport(infoJson(options.input, info)));
+    printJson(infoJson(options.input, info));
   } else {
     print(options.input, info, options.joints);
   }

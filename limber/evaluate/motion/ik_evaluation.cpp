@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "limber/core/random.h"
 #include "limber/core/rotation.h"
@@ -318,32 +319,32 @@ const IkScore* findIkScore(std::span<const IkScore> scores, std::string_view met
   return nullptr;
 }
 
-std::string ikScoreTable(std::span<const IkScore> scores) {
-  std::string table =
-      "| problems | method | solved | iterations | restarts | median \u00b5s | 99 % \u00b5s |\n"
-      "| --- | --- | ---: | ---: | ---: | ---: | ---: |\n";
+Table ikScoreTable(std::span<const IkScore> scores) {
+  Table table{{words("problems"), words("method"), number("solved", 1, " %"), number("iterations", 1),
+               number("restarts", 2), number("median \u00b5s", 1), number("99 % \u00b5s", 1)}};
   for (const IkScore& score : scores) {
-    table += fmt::format("| {} | {} | {:.1f} % | {:.1f} | {:.2f} | {:.1f} | {:.1f} |\n", score.set, score.method,
-                         100 * score.fraction(), score.iterations, score.restarts, score.medianMicros,
-                         score.percentile99Micros);
+    table.add({score.set, score.method, 100 * score.fraction(), score.iterations, score.restarts, score.medianMicros,
+               score.percentile99Micros});
   }
   const std::string_view best = bestIkMethodWithLimits(scores);
-  if (!best.empty()) table += fmt::format("\nBest with limits: {}\n", best);
+  if (!best.empty()) table.note = fmt::format("Best with limits: {}", best);
   return table;
 }
 
-std::string ikScoreJson(std::span<const IkScore> scores) {
-  std::string json = "{\"scores\": [";
-  for (std::size_t i = 0; i < scores.size(); ++i) {
-    const IkScore& s = scores[i];
-    json += fmt::format(
-        "{}\n  {{\"problems\": \"{}\", \"method\": \"{}\", \"count\": {}, \"solved\": {}, \"iterations\": {:.3f}, "
-        "\"restarts\": {:.3f}, \"median_microseconds\": {:.3f}, \"percentile_99_microseconds\": {:.3f}, "
-        "\"worst_violation\": {:.3e}}}",
-        i == 0 ? "" : ",", s.set, s.method, s.problems, s.solved, s.iterations, s.restarts, s.medianMicros,
-        s.percentile99Micros, s.worstViolation);
+Json toJson(std::span<const IkScore> scores) {
+  Json list = Json::array();
+  for (const IkScore& s : scores) {
+    list.push_back({{"problems", s.set},
+                    {"method", s.method},
+                    {"count", s.problems},
+                    {"solved", s.solved},
+                    {"iterations", s.iterations},
+                    {"restarts", s.restarts},
+                    {"median_microseconds", s.medianMicros},
+                    {"percentile_99_microseconds", s.percentile99Micros},
+                    {"worst_violation", s.worstViolation}});
   }
-  return json + fmt::format("\n], \"best_with_limits\": \"{}\"}}\n", bestIkMethodWithLimits(scores));
+  return {{"scores", std::move(list)}, {"best_with_limits", bestIkMethodWithLimits(scores)}};
 }
 
 }  // namespace limber

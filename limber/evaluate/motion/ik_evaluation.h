@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "limber/core/progress.h"
+#include "limber/report/table.h"
 #include "limber/skeleton/ik/ik_problem.h"
 #include "limber/skeleton/ik/limits/limits.h"
 #include "limber/skeleton/pose.h"
@@ -80,8 +81,8 @@ std::string_view bestIkMethodWithLimits(std::span<const IkScore> scores);
 // What one method did on the set of that name; null where it was not run.
 const IkScore* findIkScore(std::span<const IkScore> scores, std::string_view method, std::string_view set);
 
-// As a Markdown table, with that method named below, and as JSON.
-std::string ikScoreTable(std::span<const IkScore> scores);
-std::string ikScoreJson(std::span<const IkScore> scores);
+// A line for each score, with that method named below.
+Table ikScoreTable(std::span<const IkScore> scores);
+Json toJson(std::span<const IkScore> scores);
 
 }  // namespace limber

@@ -1,6 +1,7 @@
 #include "limber/evaluate/motion/ik_evaluation.h"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "limber/core/error.h"
 
@@ -46,8 +47,8 @@ TEST(IkEvaluation, ScoresWhatMethodsDo) {
   ASSERT_NE(closedForm, nullptr);
   EXPECT_EQ(closedForm->solved, 5u);
   EXPECT_EQ(bestIkMethodWithLimits(scores), "dls");
-  EXPECT_NE(ikScoreTable(scores).find("| chain-10 reachable | dls | 100.0 % |"), std::string::npos);
-  EXPECT_NE(ikScoreJson(scores).find("\"best_with_limits\": \"dls\""), std::string::npos);
+  EXPECT_NE(toMarkdown(ikScoreTable(scores)).find("| chain-10 reachable | dls | 100.0 % |"), std::string::npos);
+  EXPECT_EQ(toJson(scores)["best_with_limits"], "dls");
 }
 
 TEST(IkEvaluation, UnknownMethodsAreRefused) {

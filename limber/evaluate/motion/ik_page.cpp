@@ -7,20 +7,14 @@
 
 #include <fmt/format.h>
 
+#include "limber/evaluate/group_summary.h"
+
 namespace limber {
 
 namespace {
 
 constexpr std::string_view kColors[] = {"#1b6ca8", "#d1495b", "#edae49", "#3c9d6d", "#7b4ea3", "#00798c",
                                         "#8d5a3a", "#e07be0", "#444444", "#9aa31b", "#5b8def"};
-
-std::vector<std::string> namesIn(std::span<const IkScore> scores, std::string IkScore::*member) {
-  std::vector<std::string> names;
-  for (const IkScore& score : scores) {
-    if (std::find(names.begin(), names.end(), score.*member) == names.end()) names.push_back(score.*member);
-  }
-  return names;
-}
 
 std::string svgStart(double width, double height) {
   return fmt::format(
@@ -103,15 +97,16 @@ constexpr Goal kGoals[] = {
     {"60 joints, 5 effectors, limits", "whole-body", "humanoid reachable limits", 0, 0.99, ""},
 };
 
-std::string goalTable(std::span<const IkScore> scores) {
-  std::string table = "| problem | method | aim | here | elsewhere |\n| --- | --- | ---: | ---: | ---: |\n";
+Table goalTable(std::span<const IkScore> scores) {
+  Table table{{words("problem"), words("method"), number("aim", 0), number("here", 0), number("elsewhere", 0)}};
   for (const Goal& goal : kGoals) {
     const IkScore* score = findIkScore(scores, goal.method, goal.set);
     if (!score) continue;
-    const std::string aim = goal.wantedMicros > 0 ? fmt::format("{} µs", goal.wantedMicros)
-                                                  : fmt::format("{:g} % solved", 100 * goal.targetFraction);
-    table += fmt::format("| {} | {} | {} | {:.2f} µs, {:.1f} % solved | {} |\n", goal.what, goal.method, aim,
-                         score->medianMicros, 100 * score->fraction(), goal.elsewhere);
+    table.add({goal.what, goal.method,
+               goal.wantedMicros > 0 ? fmt::format("{} µs", goal.wantedMicros)
+                                     : fmt::format("{:g} % solved", 100 * goal.targetFraction),
+               fmt::format("{:.2f} µs, {:.1f} % solved", score->medianMicros, 100 * score->fraction()),
+               goal.elsewhere});
   }
   return table;
 }
@@ -179,7 +174,7 @@ std::string ikPage(std::span<const IkScore> scores, const std::string& plotFolde
       "## Aims\n\n{}\n"
       "## All figures\n\n{}",
       problems, problems, kClosedFormSet, bestIkMethodWithLimits(scores), prefix, kIkPlotFiles.solved, prefix,
-      kIkPlotFiles.time, goalTable(scores), ikScoreTable(scores));
+      kIkPlotFiles.time, toMarkdown(goalTable(scores)), toMarkdown(ikScoreTable(scores)));
 }
 
 }  // namespace limber

@@ -19,10 +19,11 @@ struct AnswerScore {
 // themselves only. `mostFrames` of each clip.
 std::vector<AnswerScore> scoreAnswers(const RetargetTrial& trial, Progress& progress, Warnings& skipped);
 
-// In Markdown: a line for each measure, for each method two columns, of pairs by which constants may be tuned and of
-// held-out pairs (whose motion or character is held out): means, worst values in brackets. Below it how contacts of
-// the body with itself are kept (scoreContact). `scores` with verdicts (RetargetTrial::judge).
-std::string judgeTable(std::span<const RetargetScore> scores, std::span<const AnswerScore> answers);
-std::string answersTsv(std::span<const AnswerScore> answers);
+// A line for each measure, for each method two columns, of pairs by which constants may be tuned and of
+// held-out pairs (whose motion or character is held out): means, worst values in brackets; and how contacts of the body
+// with itself are kept (scoreContact). `scores` with verdicts (RetargetTrial::judge).
+std::vector<Table> judgeTables(std::span<const RetargetScore> scores, std::span<const AnswerScore> answers);
+// A line for each answer.
+Table eachAnswer(std::span<const AnswerScore> answers);
 
 }  // namespace limber

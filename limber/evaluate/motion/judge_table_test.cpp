@@ -13,7 +13,7 @@ TEST(JudgeTable, HalvesAndMethodsHaveColumns) {
   RetargetScore other = score;
   other.heldOut = true;
   other.verdict->jerk = 1.5;
-  const std::string table = judgeTable(std::vector{score, other}, {});
+  const std::string table = toMarkdown(judgeTables(std::vector{score, other}, {}));
   EXPECT_NE(table.find("| limb-ik, set by | limb-ik, held out |"), std::string::npos);
   EXPECT_NE(table.find("| 1.25 (1.25) | 1.50 (1.50) |"), std::string::npos) << table;
 }

@@ -267,7 +267,7 @@ JointError jointErrorOf(const RetargetSetup& setup, const PoseSequence& truth, c
   return {error.global * scale, error.rootRelative * scale};
 }
 
-std::string motionMetricsText(const MotionMetrics& m) {
+std::string toText(const MotionMetrics& m) {
   std::string text;
   const auto line = [&](const char* name, const std::string& value) { text += fmt::format("{:<22}{}\n", name, value); };
   line("frames", fmt::format("{}, {} of the body", m.frames, counted(m.matched, "part")));
@@ -293,11 +293,11 @@ std::string motionMetricsText(const MotionMetrics& m) {
   return text;
 }
 
-std::string motionMetricsJson(const MotionMetrics& m) {
-  nlohmann::ordered_json json = {{"frames", m.frames},
-                                 {"matched_parts", m.matched},
-                                 {"has_legs", m.hasLegs},
-                                 {"bone_direction_degrees", m.boneDirection}};
+Json toJson(const MotionMetrics& m) {
+  Json json = {{"frames", m.frames},
+               {"matched_parts", m.matched},
+               {"has_legs", m.hasLegs},
+               {"bone_direction_degrees", m.boneDirection}};
   if (m.hasLegs) {
     json["end_effector_share"] = m.endEffector;
     json["planted_share"] = m.planted;
@@ -321,7 +321,7 @@ std::string motionMetricsJson(const MotionMetrics& m) {
     json["joint_error"] = m.jointError->global;
     json["root_relative_joint_error"] = m.jointError->rootRelative;
   }
-  return json.dump(2) + "\n";
+  return json;
 }
 
 }  // namespace limber

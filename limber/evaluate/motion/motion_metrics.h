@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "limber/document/asset.h"
 #include "limber/evaluate/skin/self_penetration.h"
 #include "limber/motion/retarget/retarget_clip.h"
 
@@ -66,7 +67,7 @@ MotionMetrics measureMotion(const RetargetSetup& setup, const PoseSequence& sour
 JointError jointErrorOf(const RetargetSetup& setup, const PoseSequence& truth, const PoseSequence& target,
                         const ShownJoints* shownTruth = nullptr, const ShownJoints* shownTarget = nullptr);
 
-std::string motionMetricsText(const MotionMetrics& metrics);
-std::string motionMetricsJson(const MotionMetrics& metrics);
+Json toJson(const MotionMetrics& metrics);
+std::string toText(const MotionMetrics& metrics);
 
 }  // namespace limber

@@ -97,7 +97,7 @@ TEST(MotionMetrics, WithoutLegsTurnsOfJointsCount) {
     rough.poses[f].locals[7].rotation = limber::testing::turn(Vec3::UnitX(), 15);
   }
   EXPECT_GT(measureMotion(setup, motion, rough).jerk, 2);
-  EXPECT_EQ(motionMetricsText(same).find("foot sliding"), std::string::npos);
+  EXPECT_EQ(toText(same).find("foot sliding"), std::string::npos);
 }
 
 TEST_F(MotionMetricsOf, ATurnedForearmIsOneBoneOfEight) {
@@ -198,14 +198,14 @@ TEST_F(MotionMetricsOf, RefusesFramesThatDiffer) {
 
 TEST_F(MotionMetricsOf, WhatWasNotMeasuredIsNotWritten) {
   MotionMetrics metrics;
-  EXPECT_FALSE(nlohmann::json::parse(motionMetricsJson(metrics)).contains("self_penetration_share"));
-  EXPECT_EQ(motionMetricsText(metrics).find("joint error"), std::string::npos);
+  EXPECT_FALSE(toJson(metrics).contains("self_penetration_share"));
+  EXPECT_EQ(toText(metrics).find("joint error"), std::string::npos);
   metrics.selfPenetration = SelfPenetration{0.01, 0.02, 7};
   metrics.jointError = JointError{0.5, 0.25};
-  const nlohmann::json json = nlohmann::json::parse(motionMetricsJson(metrics));
+  const Json json = toJson(metrics);
   EXPECT_EQ(json.at("worst_self_penetration_frame"), 7);
   EXPECT_EQ(json.at("root_relative_joint_error"), 0.25);
-  EXPECT_NE(motionMetricsText(metrics).find("1.00 % of the vertices, 2.00 % in frame 7"), std::string::npos);
+  EXPECT_NE(toText(metrics).find("1.00 % of the vertices, 2.00 % in frame 7"), std::string::npos);
 }
 
 }  // namespace

@@ -7,7 +7,9 @@
 #include "limber/character/matching/plain_skeleton.h"
 #include "limber/character/matching/rest_form.h"
 #include "limber/document/clip/motion_io.h"
+#include "limber/evaluate/group_summary.h"
 #include "limber/evaluate/held_out.h"
+#include "limber/evaluate/model_files.h"
 #include "limber/evaluate/skin/skinned_model.h"
 #include "limber/motion/limbs/body/skin_tube.h"
 #include "limber/motion/limbs/roughness.h"
@@ -133,87 +135,62 @@ class Scorer {
   std::vector<RatedCharacter> characters_;
 };
 
-// Mean and worst of one measure.
-struct Summary {
-  double sum = 0, worst = 0, count = 0;
-  void add(double value) {
-    sum += value;
-    worst = std::max(worst, value);
-    ++count;
-  }
-  std::string text(int digits) const { return fmt::format("{:.{}f} ({:.{}f})", sum / count, digits, worst, digits); }
-};
-
-std::string verdictTsv(const RetargetVerdict& v) {
-  return fmt::format("\t{:.3f}\t{:.3f}\t{:.3f}\t{:.4f}\t{:.4f}\t{:.4f}\t{:.4f}\t{:.3f}", v.jerk, v.jerkPeak, v.impact,
-                     v.sliding, v.sourceSliding, v.contacts.precision(), v.contacts.recall(), v.bones95);
-}
-
 }  // namespace
 
 std::vector<RetargetScore> scoreRetargeting(const RetargetTrial& trial, Progress& progress, Warnings& skipped) {
   std::vector<RetargetScore> scores;
   const Scorer scorer(trial, skipped);
-  progress.stage("retarget");
-  for (std::size_t i = 0; i < trial.motions.size(); ++i) {
-    progress.update(static_cast<double>(i) / static_cast<double>(trial.motions.size()));
-    try {
-      scorer.score(trial.motions[i], scores);
-    } catch (const Error& error) {
-      if (error.code() == ErrorCode::kCancelled) throw;
-      skipped.add("unreadable-motions", "motions that cannot be read left out", error.what());
-    }
-  }
-  progress.finish();
+  forEachFile(trial.motions.size(), "retarget", kUnreadMotions, progress, skipped,
+              [&](std::size_t i) { scorer.score(trial.motions[i], scores); });
   return scores;
 }
 
-std::string retargetMethodTable(std::span<const RetargetScore> scores) {
-  std::vector<std::string> methods;
-  for (const RetargetScore& score : scores) {
-    if (std::find(methods.begin(), methods.end(), score.method) == methods.end()) methods.push_back(score.method);
-  }
-  std::string table =
-      "| method | bones, degrees | hands and feet, % of the limb | sliding, heights/s | of the source "
-      "| below ground, mm of 1.7 m | jerk, times the source's | contacts kept, % | inside itself, % | frames/s |\n"
-      "|---|---|---|---|---|---|---|---|---|---|\n";
-  for (const std::string& method : methods) {
-    Summary bones, ends, sliding, source, depth, jerk, contacts, inside, rate;
-    for (const RetargetScore& score : scores) {
-      if (score.method != method) continue;
-      const MotionMetrics& m = score.metrics;
-      bones.add(m.boneDirection);
-      ends.add(100 * m.endEffector);
-      sliding.add(m.sliding);
-      source.add(m.sourceSliding);
-      depth.add(1700 * m.penetration);
-      jerk.add(m.jerk);
-      contacts.add(100 * m.contactAgreement);
-      if (score.inside) inside.add(100 * *score.inside);
-      rate.add(score.framesPerSecond);
-    }
-    table += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {:.1f} | {} | {:.0f} |\n", method, bones.text(1),
-                         ends.text(1), sliding.text(3), source.text(3), depth.text(1), jerk.text(2),
-                         contacts.sum / contacts.count, inside.count > 0 ? inside.text(1) : "-", rate.sum / rate.count);
+Table retargetMethodTable(std::span<const RetargetScore> scores) {
+  using Score = RetargetScore;
+  const auto of = [](double MotionMetrics::*metric, double factor = 1) {
+    return [=](const Score& score) { return factor * score.metrics.*metric; };
+  };
+  const std::vector<RowMeasure<Score>> measures = {
+      {"bones, degrees", decimals(1), Statistic::kMeanAndWorst, of(&MotionMetrics::boneDirection)},
+      {"hands and feet, % of the limb", decimals(1), Statistic::kMeanAndWorst, of(&MotionMetrics::endEffector, 100)},
+      {"sliding, heights/s", decimals(3), Statistic::kMeanAndWorst, of(&MotionMetrics::sliding)},
+      {"of the source", decimals(3), Statistic::kMeanAndWorst, of(&MotionMetrics::sourceSliding)},
+      {"below ground, mm of 1.7 m", decimals(1), Statistic::kMeanAndWorst, of(&MotionMetrics::penetration, 1700)},
+      {"jerk, times the source's", decimals(2), Statistic::kMeanAndWorst, of(&MotionMetrics::jerk)},
+      {"contacts kept, %", decimals(1), Statistic::kMean, of(&MotionMetrics::contactAgreement, 100)},
+      {"inside itself, %", decimals(1), Statistic::kMeanAndWorst,
+       [](const Score& score) { return score.inside ? std::optional(100 * *score.inside) : std::nullopt; }},
+      {"frames/s", decimals(0), Statistic::kMean, &Score::framesPerSecond}};
+  Table table = summaryTable({words("method")}, measures);
+  for (const std::string& method : namesIn(scores, &Score::method)) {
+    addSummary({method}, rowsWhere(scores, [&](const Score& score) { return score.method == method; }), measures,
+               table);
   }
   return table;
 }
 
-std::string retargetScoresTsv(std::span<const RetargetScore> scores) {
-  std::string text =
-      "motion\tcharacter\tmethod\tbones\tends\tsliding\tsource_sliding\tpenetration\tsource_penetration\tjerk\t"
-      "joint_jerk\tcontacts\tself_penetration\tframes_per_second\theld_out\tjudged_jerk\tjudged_peak\tjudged_impact\t"
-      "judged_sliding\tjudged_source_sliding\tprecision\trecall\tbones95\n";
+Table eachRetargetScore(std::span<const RetargetScore> scores) {
+  Table table{{words("motion"), words("character"), words("method"), number("bones", 3), number("ends", 4),
+               number("sliding", 4), number("source_sliding", 4), number("penetration", 5),
+               number("source_penetration", 5), number("jerk", 3), number("joint_jerk", 3), number("contacts", 3),
+               number("self_penetration", 5), number("frames_per_second", 0), number("held_out", 0)}};
+  table.columns.insert(
+      table.columns.end(),
+      {number("judged_jerk", 3), number("judged_peak", 3), number("judged_impact", 3), number("judged_sliding", 4),
+       number("judged_source_sliding", 4), number("precision", 4), number("recall", 4), number("bones95", 3)});
   for (const RetargetScore& score : scores) {
     const MotionMetrics& m = score.metrics;
-    text += fmt::format(
-        "{}\t{}\t{}\t{:.3f}\t{:.4f}\t{:.4f}\t{:.4f}\t{:.5f}\t{:.5f}\t{:.3f}\t{:.3f}\t{:.3f}\t{}\t{:.0f}\t{}{}\n",
-        score.motion, score.character, score.method, m.boneDirection, m.endEffector, m.sliding, m.sourceSliding,
-        m.penetration, m.sourcePenetration, m.jerk, m.jointJerk, m.contactAgreement,
-        score.inside ? fmt::format("{:.5f}", *score.inside) : "", score.framesPerSecond, score.heldOut ? 1 : 0,
-        score.verdict ? verdictTsv(*score.verdict) : "\t\t\t\t\t\t\t\t");
+    std::vector<Cell> cells = {score.motion, score.character,    score.method,  m.boneDirection,       m.endEffector,
+                               m.sliding,    m.sourceSliding,    m.penetration, m.sourcePenetration,   m.jerk,
+                               m.jointJerk,  m.contactAgreement, score.inside,  score.framesPerSecond, score.heldOut};
+    if (const auto& v = score.verdict) {
+      cells.insert(cells.end(), {v->jerk, v->jerkPeak, v->impact, v->sliding, v->sourceSliding, v->contacts.precision(),
+                                 v->contacts.recall(), v->bones95});
+    }
+    cells.resize(table.columns.size());
+    table.add(std::move(cells));
   }
-  return text;
+  return table;
 }
 
 }  // namespace limber

@@ -11,6 +11,7 @@
 #include "limber/core/progress.h"
 #include "limber/evaluate/motion/motion_metrics.h"
 #include "limber/evaluate/motion/retarget_judge.h"
+#include "limber/report/table.h"
 #include "limber/skeleton/motion.h"
 
 namespace limber {
@@ -37,9 +38,9 @@ struct RetargetTrial {
 // and pairs without legs, or that cannot be matched, are counted in `skipped`.
 std::vector<RetargetScore> scoreRetargeting(const RetargetTrial& trial, Progress& progress, Warnings& skipped);
 
-// A Markdown table with a line for each method: means over the scores, worst values in brackets.
-std::string retargetMethodTable(std::span<const RetargetScore> scores);
-// A line for each score, tab separated, with a heading.
-std::string retargetScoresTsv(std::span<const RetargetScore> scores);
+// A line for each method: means over the scores, worst values in brackets.
+Table retargetMethodTable(std::span<const RetargetScore> scores);
+// A line for each score.
+Table eachRetargetScore(std::span<const RetargetScore> scores);
 
 }  // namespace limber

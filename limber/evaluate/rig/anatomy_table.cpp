@@ -79,21 +79,25 @@ double percent(std::size_t some, std::size_t all) {
   return all > 0 ? 100.0 * static_cast<double>(some) / static_cast<double>(all) : 0;
 }
 
-std::string row(std::string_view name, const AnatomyScore& named, const AnatomyScore& hidden) {
-  return fmt::format("| {} | {} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} |\n", name, named.parts,
-                     percent(named.right, named.parts), percent(named.landmarksRight, named.landmarks),
-                     percent(named.axes, named.skeletons), percent(hidden.right, hidden.parts),
-                     percent(hidden.landmarksRight, hidden.landmarks), percent(hidden.axes, hidden.skeletons));
-}
-
-constexpr std::string_view kHeader =
-    "| | parts | right, % | landmarks, % | up and front, % | names hidden: right, % | landmarks, % | up and front, % "
-    "|\n"
-    "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n";
-
 struct Both {
   AnatomyScore named, hidden;
 };
+
+Table scoreTable(std::string caption) {
+  return {
+      {words(""), number("parts", 0), number("right, %", 1), number("landmarks, %", 1), number("up and front, %", 1),
+       number("names hidden: right, %", 1), number("landmarks, %", 1), number("up and front, %", 1)},
+      std::move(caption)};
+}
+
+void add(std::string_view name, const Both& scores, Table& table) {
+  std::vector<Cell> cells = {name, scores.named.parts};
+  for (const AnatomyScore* score : {&scores.named, &scores.hidden}) {
+    cells.insert(cells.end(), {percent(score->right, score->parts), percent(score->landmarksRight, score->landmarks),
+                               percent(score->axes, score->skeletons)});
+  }
+  table.add(std::move(cells));
+}
 
 void scoreBoth(const LabelledSkeleton& body, Both& scores) {
   AnatomyOptions hidden;
@@ -170,7 +174,7 @@ std::vector<LabelledSkeleton> labelledSkeletons(std::string_view labels, const s
   return bodies;
 }
 
-std::string anatomyPage(const std::vector<LabelledSkeleton>& bodies, Progress& progress) {
+std::vector<Table> anatomyTables(const std::vector<LabelledSkeleton>& bodies, Progress& progress) {
   progress.stage("read bodies");
   const auto isCheck = [](const LabelledSkeleton& body) {
     return std::any_of(kCheckFolders.begin(), kCheckFolders.end(),
@@ -192,35 +196,33 @@ std::string anatomyPage(const std::vector<LabelledSkeleton>& bodies, Progress& p
       if (!copy.skeleton.joints.empty()) scoreBoth(copy, isCheck(body) ? damagedCheck[d] : damagedFitted[d]);
     }
   }
-  std::string page;
+  std::vector<Table> tables;
   for (const bool onCheck : {false, true}) {
-    page += onCheck ? "\nBodies that nothing was fitted to:\n\n" : "Bodies that the weights are fitted to:\n\n";
-    page += kHeader;
-    const Both& whole = onCheck ? check : fitted;
-    page += row("as they are", whole.named, whole.hidden);
+    Table& table = tables.emplace_back(
+        scoreTable(onCheck ? "Bodies that nothing was fitted to:" : "Bodies that the weights are fitted to:"));
+    add("as they are", onCheck ? check : fitted, table);
     for (std::size_t d = 0; d < kDamages; ++d) {
-      const Both& both = (onCheck ? damagedCheck : damagedFitted)[d];
-      page += row(nameOf(static_cast<Damage>(d)), both.named, both.hidden);
+      add(nameOf(static_cast<Damage>(d)), (onCheck ? damagedCheck : damagedFitted)[d], table);
     }
   }
   if (flat.named.skeletons > 0) {
-    page += "\nSkeletons whose joints hang on the root, or on nothing:\n\n";
-    page += kHeader;
-    page += row("as they are", flat.named, flat.hidden);
+    add("as they are", flat,
+        tables.emplace_back(scoreTable("Skeletons whose joints hang on the root, or on nothing:")));
   }
-  page +=
-      "\nHow often what is said with a confidence is right, of parts as they are:\n\n"
-      "| confidence | fitted: parts | right, % | fitted, names hidden: parts | right, % | check: parts | right, % | "
-      "check, names hidden: parts | right, % |\n"
-      "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n";
+  Table& confidences = tables.emplace_back(
+      Table{{words("confidence")}, "How often what is said with a confidence is right, of parts as they are:"});
+  for (const char* of : {"fitted", "fitted, names hidden", "check", "check, names hidden"}) {
+    confidences.columns.push_back(number(fmt::format("{}: parts", of), 0));
+    confidences.columns.push_back(number("right, %", 1));
+  }
   for (std::size_t i = 0; i + 1 < kConfidences.size(); ++i) {
-    page += fmt::format("| {} to {} |", kConfidences[i], kConfidences[i + 1]);
+    std::vector<Cell> cells = {fmt::format("{} to {}", kConfidences[i], kConfidences[i + 1])};
     for (const AnatomyScore* score : {&fitted.named, &fitted.hidden, &check.named, &check.hidden}) {
-      page += fmt::format(" {} | {:.1f} |", score->said[i], percent(score->saidRight[i], score->said[i]));
+      cells.insert(cells.end(), {score->said[i], percent(score->saidRight[i], score->said[i])});
     }
-    page += "\n";
+    confidences.add(std::move(cells));
   }
-  return page;
+  return tables;
 }
 
 }  // namespace limber

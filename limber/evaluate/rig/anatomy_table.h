@@ -10,6 +10,7 @@
 #include "limber/core/error.h"
 #include "limber/core/progress.h"
 #include "limber/evaluate/rig/labelled_skeleton.h"
+#include "limber/report/table.h"
 
 namespace limber {
 
@@ -33,9 +34,9 @@ void addScore(const LabelledSkeleton& body, const Anatomy& anatomy, AnatomyScore
 std::vector<LabelledSkeleton> labelledSkeletons(std::string_view labels, const std::filesystem::path& data,
                                                 Warnings& skipped);
 
-// A page in Markdown: parts right with names and without, whole and with each Damage, of files below creatures/check
+// Parts right with names and without, whole and with each Damage, of files below creatures/check
 // and wild/judge and of all others; and a table of how often parts were right by their confidence. Skeletons whose
 // joints are all children of the root are listed apart. The same bytes for the same files.
-std::string anatomyPage(const std::vector<LabelledSkeleton>& bodies, Progress& progress);
+std::vector<Table> anatomyTables(const std::vector<LabelledSkeleton>& bodies, Progress& progress);
 
 }  // namespace limber

@@ -10,6 +10,7 @@
 #include "limber/core/progress.h"
 #include "limber/core/types.h"
 #include "limber/document/asset.h"
+#include "limber/report/table.h"
 
 namespace limber {
 
@@ -33,9 +34,9 @@ using Decomposer = std::function<void(const Asset& asset, const std::string& cli
 std::vector<DecompositionRow> decomposeFolder(const std::filesystem::path& folder, const Decomposer& decompose,
                                               Progress& progress, Warnings& skipped);
 
-// A Markdown table with a line for each folder: means, and how many files come back within 0.3 % of the diagonal.
-std::string decompositionTable(std::span<const DecompositionRow> rows);
-// A line for each row, tab separated, below a line of names.
-std::string eachDecomposition(std::span<const DecompositionRow> rows);
+// A line for each folder: means, and how many files come back within 0.3 % of the diagonal.
+Table decompositionTable(std::span<const DecompositionRow> rows);
+// A line for each row.
+Table eachDecomposition(std::span<const DecompositionRow> rows);
 
 }  // namespace limber

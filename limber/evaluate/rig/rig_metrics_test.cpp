@@ -97,7 +97,7 @@ TEST(RigTable, SaysWhatWasMeasured) {
   EXPECT_NE(toText(comparison).find("J2J 2.00 %"), std::string::npos);
   const std::vector<RigTableRow> rows = {{"one.glb", "one", {false, "humanoid", 0.9}, comparison, 0.5},
                                          {"two.glb", "two", {false, "humanoid", 0.8}, {}, 1.5}};
-  const std::string table = rigTable(rows);
+  const std::string table = toMarkdown(rigTable(rows));
   EXPECT_NE(table.find("| one | humanoid 0.90 | 3/3 | 2.00 |"), std::string::npos);
   EXPECT_NE(table.find("| **mean of 2** | | | 1.00 |"), std::string::npos);
 }

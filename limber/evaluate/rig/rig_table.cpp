@@ -5,6 +5,8 @@
 
 #include "limber/document/read.h"
 #include "limber/document/rig/rig_io.h"
+#include "limber/evaluate/group_summary.h"
+#include "limber/evaluate/model_files.h"
 
 namespace limber {
 
@@ -25,22 +27,6 @@ std::string distancesText(const RigDistances& d) {
   return fmt::format(
       "J2J {:.2f} %, J2B {:.2f} %, B2B {:.2f} %; precision {:.2f}, recall {:.2f}, IoU {:.2f} ({}/{} joints)",
       d.jointToJoint, d.jointToBone, d.boneToBone, d.precision, d.recall, d.iou, d.joints, d.truthJoints);
-}
-
-RigDistances& operator+=(RigDistances& sum, const RigDistances& d) {
-  sum.jointToJoint += d.jointToJoint;
-  sum.jointToBone += d.jointToBone;
-  sum.boneToBone += d.boneToBone;
-  sum.precision += d.precision;
-  sum.recall += d.recall;
-  sum.iou += d.iou;
-  return sum;
-}
-
-std::string cells(const RigDistances& all, const RigDistances& d, double parts) {
-  return fmt::format("{:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.2f}",
-                     all.jointToJoint / parts, all.jointToBone / parts, all.boneToBone / parts, d.jointToJoint / parts,
-                     d.jointToBone / parts, d.boneToBone / parts, d.precision / parts, d.recall / parts, d.iou / parts);
 }
 
 }  // namespace
@@ -69,25 +55,21 @@ std::vector<RigTableRow> compareRigsOf(std::span<const std::filesystem::path> fi
                                        Progress& progress, Warnings& skipped, const std::optional<ClipMoment>& moment,
                                        const RiggedSeen& seen) {
   std::vector<RigTableRow> rows;
-  progress.stage("compare rigs");
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    progress.update(static_cast<double>(i) / static_cast<double>(files.size()));
-    std::string_view failure = "unreadable";
+  forEachFile(files.size(), "compare rigs", kNotCompared, progress, skipped, [&](std::size_t i) {
+    Asset asset = readAsset(files[i]);
+    if (!hasRig(asset)) {
+      skipped.add("without-rig", "files without a rig left out", files[i].filename().string());
+      return;
+    }
+    RigTableRow row;
+    row.path = files[i];
+    row.name = files[i].stem().string();
+    if (moment) {
+      standAt(asset, *moment);
+      row.name += fmt::format(" {} {:.2f}", moment->clip, moment->seconds);
+    }
+    const SkinnedModel truth = readSkinnedModel(asset);
     try {
-      Asset asset = readAsset(files[i]);
-      if (!hasRig(asset)) {
-        skipped.add("without-rig", "files without a rig left out", files[i].filename().string());
-        continue;
-      }
-      RigTableRow row;
-      row.path = files[i];
-      row.name = files[i].stem().string();
-      if (moment) {
-        standAt(asset, *moment);
-        row.name += fmt::format(" {} {:.2f}", moment->clip, moment->seconds);
-      }
-      const SkinnedModel truth = readSkinnedModel(asset);
-      failure = "not-rigged";
       const double start = secondsNow();
       row.fit = rerig(asset);
       row.seconds = secondsNow() - start;
@@ -96,44 +78,49 @@ std::vector<RigTableRow> compareRigsOf(std::span<const std::filesystem::path> fi
       rows.push_back(std::move(row));
     } catch (const Error& error) {
       if (error.code() == ErrorCode::kCancelled) throw;
-      skipped.add(
-          failure,
-          failure == "not-rigged" ? "files that were not rigged left out" : "files that cannot be compared left out",
-          error.what());
+      skipped.add("not-rigged", "files that were not rigged left out", error.what());
     }
-  }
-  progress.finish();
+  });
   return rows;
 }
 
-std::string rigTable(std::span<const RigTableRow> rows) {
-  std::string table =
-      "| file | fit | joints limber/artist | J2J | J2B | B2B | no fingers: J2J | J2B | B2B | precision | recall | IoU "
-      "| "
-      "named mean | named worst | s |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
-  RigDistances all, without;
-  double named = 0, worst = 0, seconds = 0, namedRows = 0;
-  for (const RigTableRow& row : rows) {
-    const RigComparison& c = row.comparison;
-    all += c.all;
-    without += c.withoutFingers;
-    seconds += row.seconds;
-    if (!c.named.empty()) {
-      named += c.namedMean;
-      worst += c.namedWorst;
-      ++namedRows;
-    }
-    const std::string names = c.named.empty() ? "- | -" : fmt::format("{:.2f} | {:.2f}", c.namedMean, c.namedWorst);
-    table += fmt::format("| {} | {} {:.2f} | {}/{} | {} | {} | {:.2f} |\n", row.name, row.fit.likeliest,
-                         row.fit.confidence, c.withoutFingers.joints, c.withoutFingers.truthJoints,
-                         cells(c.all, c.withoutFingers, 1), names, row.seconds);
+Table rigTable(std::span<const RigTableRow> rows) {
+  using Row = RigTableRow;
+  std::vector<RowMeasure<Row>> measures;
+  const auto add = [&](std::string name, const auto& value) {
+    measures.push_back({std::move(name), decimals(2), Statistic::kMean, value});
+  };
+  const auto addDistance = [&](std::string name, RigDistances RigComparison::*joints, double RigDistances::*distance) {
+    add(std::move(name), [=](const Row& row) { return row.comparison.*joints.*distance; });
+  };
+  addDistance("J2J", &RigComparison::all, &RigDistances::jointToJoint);
+  addDistance("J2B", &RigComparison::all, &RigDistances::jointToBone);
+  addDistance("B2B", &RigComparison::all, &RigDistances::boneToBone);
+  addDistance("no fingers: J2J", &RigComparison::withoutFingers, &RigDistances::jointToJoint);
+  addDistance("J2B", &RigComparison::withoutFingers, &RigDistances::jointToBone);
+  addDistance("B2B", &RigComparison::withoutFingers, &RigDistances::boneToBone);
+  addDistance("precision", &RigComparison::withoutFingers, &RigDistances::precision);
+  addDistance("recall", &RigComparison::withoutFingers, &RigDistances::recall);
+  addDistance("IoU", &RigComparison::withoutFingers, &RigDistances::iou);
+  const auto ofNamed = [](double RigComparison::*measure) {
+    return [=](const Row& row) {
+      return row.comparison.named.empty() ? std::nullopt : std::optional(row.comparison.*measure);
+    };
+  };
+  add("named mean", ofNamed(&RigComparison::namedMean));
+  add("named worst", ofNamed(&RigComparison::namedWorst));
+  add("s", &Row::seconds);
+  Table table = summaryTable({words("file"), words("fit"), words("joints limber/artist")}, measures);
+  RowGroup<Row> all;
+  for (const Row& row : rows) {
+    const RigDistances& d = row.comparison.withoutFingers;
+    addSummary({row.name, fmt::format("{} {:.2f}", row.fit.likeliest, row.fit.confidence),
+                fmt::format("{}/{}", d.joints, d.truthJoints)},
+               RowGroup<Row>{&row}, measures, table);
+    all.push_back(&row);
   }
-  if (rows.empty()) return table;
-  const double count = static_cast<double>(rows.size());
-  const std::string names =
-      namedRows > 0 ? fmt::format("{:.2f} | {:.2f}", named / namedRows, worst / namedRows) : std::string("- | -");
-  return table + fmt::format("| **mean of {}** | | | {} | {} | {:.2f} |\n", rows.size(), cells(all, without, count),
-                             names, seconds / count);
+  addSummary({fmt::format("**mean of {}**", rows.size()), "", ""}, all, measures, table);
+  return table;
 }
 
 }  // namespace limber

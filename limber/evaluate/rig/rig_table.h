@@ -12,6 +12,7 @@
 #include "limber/document/asset.h"
 #include "limber/document/clip/clip_moment.h"
 #include "limber/evaluate/rig/rig_metrics.h"
+#include "limber/report/table.h"
 
 namespace limber {
 
@@ -49,7 +50,7 @@ std::vector<RigTableRow> compareRigsOf(std::span<const std::filesystem::path> fi
                                        const std::optional<ClipMoment>& moment = std::nullopt,
                                        const RiggedSeen& seen = {});
 
-// A Markdown table with a line for each row and one of means.
-std::string rigTable(std::span<const RigTableRow> rows);
+// A line for each row and one of means.
+Table rigTable(std::span<const RigTableRow> rows);
 
 }  // namespace limber

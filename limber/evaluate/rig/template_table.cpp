@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <map>
+#include <optional>
 #include <set>
 
 #include <fmt/format.h>
 
 #include "limber/core/error.h"
 #include "limber/core/text/split_text.h"
+#include "limber/evaluate/group_summary.h"
 
 namespace limber {
 
@@ -34,8 +37,8 @@ std::string_view kindOfTemplate(std::string_view name) {
   return name.starts_with("humanoid") ? "humanoid" : name;
 }
 
-bool isNear(const TemplateTrial& trial) {
-  return trial.row.comparison.withoutFingers.jointToJoint <= kRigIsOff;
+double distanceOf(const TemplateTrial& trial) {
+  return trial.row.comparison.withoutFingers.jointToJoint;
 }
 
 // Where no template suits it, handles are right.
@@ -63,92 +66,72 @@ std::string fractionText(const Fraction& fraction) {
                      100 * std::max(0.0, centre - half), 100 * std::min(1.0, centre + half));
 }
 
-std::vector<const TemplateTrial*> ofSplit(std::span<const TemplateTrial> trials, const std::string& split) {
-  std::vector<const TemplateTrial*> chosen;
-  for (const TemplateTrial& trial : trials) {
-    if (trial.file.split == split) chosen.push_back(&trial);
-  }
-  return chosen;
+using Trials = RowGroup<TemplateTrial>;
+
+// By their names.
+std::map<std::string, Trials> splitsOf(std::span<const TemplateTrial> trials) {
+  std::map<std::string, Trials> splits;
+  for (const TemplateTrial& trial : trials) splits[trial.file.split].push_back(&trial);
+  return splits;
 }
 
-std::string meanOf(const std::vector<double>& values) {
-  if (values.empty()) return "-";
-  double sum = 0;
-  for (const double value : values) sum += value;
-  return fmt::format("{:.2f} ({:.2f})", sum / static_cast<double>(values.size()),
-                     *std::max_element(values.begin(), values.end()));
-}
-
-struct Column {
-  Fraction kind, sure, sureAndWrong;
-  std::vector<double> all, templates, handles, named, seconds;
-
-  explicit Column(const std::vector<const TemplateTrial*>& trials) {
-    for (const TemplateTrial* trial : trials) {
-      kind.add(kindIsRight(*trial));
-      sure.add(!trial->row.fit.isAbstained);
-      if (!trial->row.fit.isAbstained) sureAndWrong.add(!suits(*trial) || !isNear(*trial));
-      seconds.push_back(trial->row.seconds);
-      const RigComparison& c = trial->row.comparison;
-      all.push_back(c.withoutFingers.jointToJoint);
-      (trial->row.fit.isAbstained ? handles : templates).push_back(c.withoutFingers.jointToJoint);
-      if (!trial->row.fit.isAbstained && !c.named.empty()) named.push_back(c.namedMean);
-    }
-  }
-};
-
-std::string summary(std::span<const TemplateTrial> trials, const std::set<std::string>& splits) {
-  std::vector<Column> columns;
-  std::string head = "| measure |", rule = "|---|";
-  for (const std::string& split : splits) {
-    columns.emplace_back(ofSplit(trials, split));
-    head += fmt::format(" {} |", split);
-    rule += "---|";
-  }
-  std::string table = head + "\n" + rule + "\n";
-  const auto row = [&](std::string_view title, auto text) {
-    table += fmt::format("| {} |", title);
-    for (const Column& column : columns) table += fmt::format(" {} |", text(column));
-    table += "\n";
+Table summary(const std::map<std::string, Trials>& splits) {
+  Table table{{words("measure")}};
+  for (const auto& [split, trials] : splits) table.columns.push_back(words(split));
+  // Of the trials for which there is a value.
+  const auto addFraction = [&](std::string name, const std::function<std::optional<bool>(const TemplateTrial&)>& hit) {
+    table.addAcross(std::move(name), splits, [&](const auto& split) {
+      Fraction fraction;
+      for (const TemplateTrial* trial : split.second) {
+        if (const std::optional<bool> is = hit(*trial)) fraction.add(*is);
+      }
+      return fractionText(fraction);
+    });
   };
-  row("kind told right", [](const Column& c) { return fractionText(c.kind); });
-  row("a template is taken", [](const Column& c) { return fractionText(c.sure); });
-  row(fmt::format("of these wrong (kind, or J2J above {:.0f} %)", kRigIsOff),
-      [](const Column& c) { return fractionText(c.sureAndWrong); });
-  row("J2J without fingers, %, mean (worst)", [](const Column& c) { return meanOf(c.all); });
-  row("of templates", [](const Column& c) { return meanOf(c.templates); });
-  row("of handles", [](const Column& c) { return meanOf(c.handles); });
-  row("joints of the same meaning, % of the height", [](const Column& c) { return meanOf(c.named); });
-  row("seconds", [](const Column& c) { return meanOf(c.seconds); });
+  const auto addMean = [&](std::string name, const std::function<std::optional<double>(const TemplateTrial&)>& value) {
+    const RowMeasure<TemplateTrial> measure{name, decimals(2), Statistic::kMeanAndWorst, value};
+    table.addAcross(std::move(name), splits, [&](const auto& split) { return summaryOf(split.second, measure); });
+  };
+  const auto distanceWhere = [](bool isAbstained) {
+    return [=](const TemplateTrial& trial) {
+      return trial.row.fit.isAbstained == isAbstained ? std::optional(distanceOf(trial)) : std::nullopt;
+    };
+  };
+  addFraction("kind told right", kindIsRight);
+  addFraction("a template is taken", [](const TemplateTrial& trial) { return !trial.row.fit.isAbstained; });
+  addFraction(fmt::format("of these wrong (kind, or J2J above {:.0f} %)", kRigIsOff), [](const TemplateTrial& trial) {
+    return trial.row.fit.isAbstained ? std::nullopt : std::optional(!suits(trial) || distanceOf(trial) > kRigIsOff);
+  });
+  addMean("J2J without fingers, %, mean (worst)", distanceOf);
+  addMean("of templates", distanceWhere(false));
+  addMean("of handles", distanceWhere(true));
+  addMean("joints of the same meaning, % of the height", [](const TemplateTrial& trial) {
+    const RigComparison& c = trial.row.comparison;
+    return trial.row.fit.isAbstained || c.named.empty() ? std::nullopt : std::optional(c.namedMean);
+  });
+  addMean("seconds", [](const TemplateTrial& trial) { return trial.row.seconds; });
   return table;
 }
 
 // Of bodies that a template suits and of those that none does: whoever is sure there is wrong.
-std::string reliability(std::span<const TemplateTrial> trials, const std::set<std::string>& splits) {
-  std::string table = "| confidence |", rule = "|---|";
-  for (const std::string& split : splits) {
-    table += fmt::format(" {}: likeliest kind is right |", split);
-    rule += "---|";
-  }
-  table += "\n" + rule + "\n";
+Table reliability(const std::map<std::string, Trials>& splits) {
+  Table table{{words("confidence")}};
+  for (const auto& [split, trials] : splits) table.columns.push_back(words(split + ": likeliest kind is right"));
   for (std::size_t bin = 0; bin + 1 < kBins.size(); ++bin) {
-    table += fmt::format("| {:.1f} to {:.1f} |", kBins[bin], kBins[bin + 1]);
-    for (const std::string& split : splits) {
+    const bool isLast = bin + 2 == kBins.size();
+    table.addAcross(fmt::format("{:.1f} to {:.1f}", kBins[bin], kBins[bin + 1]), splits, [&](const auto& split) {
       Fraction fraction;
-      for (const TemplateTrial* trial : ofSplit(trials, split)) {
-        const bool isLast = bin + 2 == kBins.size();
-        if (trial->row.fit.confidence < kBins[bin] || (!isLast && trial->row.fit.confidence >= kBins[bin + 1]))
-          continue;
-        fraction.add(suits(*trial));
+      for (const TemplateTrial* trial : split.second) {
+        const double confidence = trial->row.fit.confidence;
+        if (confidence >= kBins[bin] && (isLast || confidence < kBins[bin + 1])) fraction.add(suits(*trial));
       }
-      table += fmt::format(" {} |", fractionText(fraction));
-    }
-    table += "\n";
+      return fractionText(fraction);
+    });
   }
   return table;
 }
 
-std::string confusion(std::span<const TemplateTrial> trials) {
+Table confusion(std::span<const TemplateTrial> trials) {
   std::set<std::string> kinds, reported = {"handles"};
   std::map<std::pair<std::string, std::string>, int> counts;
   for (const TemplateTrial& trial : trials) {
@@ -157,19 +140,13 @@ std::string confusion(std::span<const TemplateTrial> trials) {
     reported.insert(by);
     ++counts[{trial.file.kind, by}];
   }
-  std::string table = "| kind |", rule = "|---|";
-  for (const std::string& by : reported) {
-    table += fmt::format(" {} |", by);
-    rule += "---|";
-  }
-  table += "\n" + rule + "\n";
+  Table table{{words("kind")}};
+  for (const std::string& by : reported) table.columns.push_back(number(by, 0));
   for (const std::string& kind : kinds) {
-    table += fmt::format("| {} |", kind);
-    for (const std::string& by : reported) {
+    table.addAcross(kind, reported, [&](const std::string& by) {
       const auto found = counts.find({kind, by});
-      table += found == counts.end() ? " |" : fmt::format(" {} |", found->second);
-    }
-    table += "\n";
+      return found == counts.end() ? Cell("") : Cell(found->second);
+    });
   }
   return table;
 }
@@ -234,62 +211,53 @@ std::span<const std::string_view> templatesFor(std::string_view kind) {
   return {};
 }
 
-std::string templateTables(std::span<const TemplateTrial> trials) {
-  std::set<std::string> splits;
-  for (const TemplateTrial& trial : trials) splits.insert(trial.file.split);
-  return summary(trials, splits) + "\n" + reliability(trials, splits) + "\n" + confusion(trials);
+std::vector<Table> templateTables(std::span<const TemplateTrial> trials) {
+  const std::map<std::string, Trials> splits = splitsOf(trials);
+  return {summary(splits), reliability(splits), confusion(trials)};
 }
 
-std::string eachTemplateTrial(std::span<const TemplateTrial> trials) {
-  std::string text =
-      "path\tsplit\tkind\tlikeliest\tconfidence\tabstained\tkind_right\tj2j\tnamed_mean\tnamed_worst\tseconds\n";
+Table eachTemplateTrial(std::span<const TemplateTrial> trials) {
+  Table table{{words("path"), words("split"), words("kind"), words("likeliest"), number("confidence", 3),
+               number("abstained", 0), number("kind_right", 0), number("j2j", 2), number("named_mean", 2),
+               number("named_worst", 2), number("seconds", 2)}};
   for (const TemplateTrial& trial : trials) {
-    text += fmt::format("{}\t{}\t{}\t{}\t{:.3f}\t{}\t{}", trial.file.path, trial.file.split, trial.file.kind,
-                        trial.row.fit.likeliest, trial.row.fit.confidence, trial.row.fit.isAbstained ? 1 : 0,
-                        kindIsRight(trial) ? 1 : 0);
-    const RigComparison& c = trial.row.comparison;
-    text += fmt::format("\t{:.2f}\t{:.2f}\t{:.2f}\t{:.2f}\n", c.withoutFingers.jointToJoint, c.namedMean, c.namedWorst,
-                        trial.row.seconds);
+    const RigTableRow& row = trial.row;
+    table.add({trial.file.path, trial.file.split, trial.file.kind, row.fit.likeliest, row.fit.confidence,
+               row.fit.isAbstained, kindIsRight(trial), distanceOf(trial), row.comparison.namedMean,
+               row.comparison.namedWorst, row.seconds});
   }
-  return text;
+  return table;
 }
 
-std::string riggerTable(std::span<const RiggerTrial> all) {
-  const std::vector<RiggerTrial> trials = ofCommonFiles(all);
-  std::vector<std::string> groups, riggers;
-  const auto addNew = [](const std::string& name, std::vector<std::string>& names) {
-    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+Table riggerTable(std::span<const RiggerTrial> all) {
+  using Trial = RiggerTrial;
+  const std::vector<Trial> common = ofCommonFiles(all);
+  const std::span<const Trial> trials = common;
+  std::vector<RowMeasure<Trial>> measures;
+  const auto add = [&](std::string name, const auto& value) {
+    measures.push_back({std::move(name), decimals(2), Statistic::kMean, value});
   };
-  for (const RiggerTrial& trial : trials) {
-    addNew(trial.group, groups);
-    addNew(trial.rigger, riggers);
-  }
-  std::string table =
-      "| files | rigger | joints for one of the artist's | J2J | J2B | B2B | precision | recall | IoU | inside | s |\n"
-      "|---|---|---|---|---|---|---|---|---|---|---|\n";
-  for (const std::string& group : groups) {
-    for (const std::string& rigger : riggers) {
-      std::array<double, 9> sums = {};
-      std::size_t count = 0;
-      for (const RiggerTrial& trial : trials) {
-        if (trial.group != group || trial.rigger != rigger) continue;
-        const RigDistances& d = trial.row.comparison.withoutFingers;
-        const std::array<double, 9> values = {d.truthJoints > 0 ? static_cast<double>(d.joints) / d.truthJoints : 0,
-                                              d.jointToJoint,
-                                              d.jointToBone,
-                                              d.boneToBone,
-                                              d.precision,
-                                              d.recall,
-                                              d.iou,
-                                              trial.inside,
-                                              trial.row.seconds};
-        for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += values[i];
-        ++count;
-      }
-      if (count == 0) continue;
-      table += fmt::format("| {} ({}) | {} |", group, count, rigger);
-      for (const double sum : sums) table += fmt::format(" {:.2f} |", sum / static_cast<double>(count));
-      table += "\n";
+  const auto addDistance = [&](std::string name, double RigDistances::*distance) {
+    add(std::move(name), [=](const Trial& trial) { return trial.row.comparison.withoutFingers.*distance; });
+  };
+  add("joints for one of the artist's", [](const Trial& trial) {
+    const RigDistances& d = trial.row.comparison.withoutFingers;
+    return d.truthJoints > 0 ? static_cast<double>(d.joints) / d.truthJoints : 0;
+  });
+  addDistance("J2J", &RigDistances::jointToJoint);
+  addDistance("J2B", &RigDistances::jointToBone);
+  addDistance("B2B", &RigDistances::boneToBone);
+  addDistance("precision", &RigDistances::precision);
+  addDistance("recall", &RigDistances::recall);
+  addDistance("IoU", &RigDistances::iou);
+  add("inside", &Trial::inside);
+  add("s", [](const Trial& trial) { return trial.row.seconds; });
+  Table table = summaryTable({words("files"), words("rigger")}, measures);
+  for (const std::string& group : namesIn(trials, &Trial::group)) {
+    for (const std::string& rigger : namesIn(trials, &Trial::rigger)) {
+      const RowGroup<Trial> found =
+          rowsWhere(trials, [&](const Trial& trial) { return trial.group == group && trial.rigger == rigger; });
+      addSummary({fmt::format("{} ({})", group, found.size()), rigger}, found, measures, table);
     }
   }
   return table;

@@ -35,10 +35,9 @@ inline constexpr double kRigIsOff = 8;
 
 // Of each split: how often the kind is told right (Wilson's 95 % interval), what is called sure, what is sure and
 // wrong, and how near the rigs come; the reliability of the confidence; and which kind was taken for which template.
-// Markdown.
-std::string templateTables(std::span<const TemplateTrial> trials);
-// A line for each trial, tab separated.
-std::string eachTemplateTrial(std::span<const TemplateTrial> trials);
+std::vector<Table> templateTables(std::span<const TemplateTrial> trials);
+// A line for each trial.
+Table eachTemplateTrial(std::span<const TemplateTrial> trials);
 
 // A file rigged by one of several riggers.
 struct RiggerTrial {
@@ -50,7 +49,7 @@ struct RiggerTrial {
 
 // Means of each group and rigger, side by side in the order in which they come: joints that there are for the artist's,
 // the distances and the pairing of joints without fingers, those inside, and seconds. Over the files (by their paths)
-// that all the riggers have rigged, so that lines of a group compare. Markdown.
-std::string riggerTable(std::span<const RiggerTrial> trials);
+// that all the riggers have rigged, so that lines of a group compare.
+Table riggerTable(std::span<const RiggerTrial> trials);
 
 }  // namespace limber

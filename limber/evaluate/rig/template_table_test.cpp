@@ -47,7 +47,7 @@ TEST(TemplateTables, CountKindsAndWhatIsSureAndWrong) {
       trial("bird", {true, "bird", 0.3}, 5),                // abstains where there is a template
       trial("blob", {true, "bird", 0.3}, 6),                // abstains where there is none
   };
-  const std::string tables = templateTables(trials);
+  const std::string tables = toMarkdown(templateTables(trials));
   EXPECT_THAT(tables, HasSubstr("| kind told right | 3 of 5 (60 %;"));
   EXPECT_THAT(tables, HasSubstr("| a template is taken | 3 of 5 (60 %;"));
   EXPECT_THAT(tables, HasSubstr("| of these wrong (kind, or J2J above 8 %) | 2 of 3 (67 %;"));
@@ -55,7 +55,7 @@ TEST(TemplateTables, CountKindsAndWhatIsSureAndWrong) {
   EXPECT_THAT(tables, HasSubstr("| 0.2 to 0.4 | 1 of 2 (50 %;"));
   EXPECT_THAT(tables, HasSubstr("| 0.8 to 1.0 | 2 of 2 (100 %; 34 to 100)"));
   EXPECT_THAT(tables, HasSubstr("| bird | 1 | 1 |")) << "one by handles, one taken for a person";
-  EXPECT_THAT(eachTemplateTrial(trials), HasSubstr("bird.glb\tcheck\tbird\thumanoid\t0.700\t0\t0\t4.00"));
+  EXPECT_THAT(toTsv(eachTemplateTrial(trials)), HasSubstr("bird.glb\tcheck\tbird\thumanoid\t0.700\t0\t0\t4.00"));
 }
 
 TEST(RiggerTable, HasALineForEachGroupAndRigger) {
@@ -69,18 +69,18 @@ TEST(RiggerTable, HasALineForEachGroupAndRigger) {
     result.row.seconds = 0.5;
     return result;
   };
-  const std::string table = riggerTable(
+  const std::string table = toMarkdown(riggerTable(
       std::vector<RiggerTrial>{riggerTrial("a", "tune", "1.glb", 2, 1), riggerTrial("a", "tune", "2.glb", 4, 0.5),
                                riggerTrial("a", "check", "3.glb", 7, 1), riggerTrial("b", "tune", "1.glb", 9, 0),
-                               riggerTrial("b", "tune", "2.glb", 9, 0), riggerTrial("b", "check", "3.glb", 5, 0)});
+                               riggerTrial("b", "tune", "2.glb", 9, 0), riggerTrial("b", "check", "3.glb", 5, 0)}));
   EXPECT_THAT(table, HasSubstr("| tune (2) | a | 1.50 | 3.00 | 0.00 | 0.00 | 0.00 | 0.00 | 0.00 | 0.75 | 0.50 |"));
   EXPECT_THAT(table, HasSubstr("| tune (2) | b | 1.50 | 9.00 |"));
   EXPECT_THAT(table, HasSubstr("| check (1) | a | 1.50 | 7.00 |"));
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 6);
   // A file that one rigger could not do counts for none.
-  const std::string common = riggerTable(
+  const std::string common = toMarkdown(riggerTable(
       std::vector<RiggerTrial>{riggerTrial("a", "tune", "1.glb", 2, 1), riggerTrial("a", "tune", "2.glb", 4, 0.5),
-                               riggerTrial("b", "tune", "1.glb", 9, 0), riggerTrial("a", "check", "3.glb", 7, 1)});
+                               riggerTrial("b", "tune", "1.glb", 9, 0), riggerTrial("a", "check", "3.glb", 7, 1)}));
   EXPECT_THAT(common, HasSubstr("| tune (1) | a | 1.50 | 2.00 |"));
   EXPECT_THAT(common, HasSubstr("| tune (1) | b | 1.50 | 9.00 |"));
   EXPECT_EQ(std::count(common.begin(), common.end(), '\n'), 4);

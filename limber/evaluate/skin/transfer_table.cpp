@@ -9,10 +9,12 @@
 
 #include "limber/character/anatomy/body_part.h"
 #include "limber/character/anatomy/names/humanoid_joints.h"
+#include "limber/core/file/folder.h"
 #include "limber/core/random.h"
 #include "limber/document/read.h"
 #include "limber/document/rig/rest_pose.h"
 #include "limber/document/rig/rig_io.h"
+#include "limber/evaluate/group_summary.h"
 #include "limber/evaluate/pairing.h"
 #include "limber/evaluate/rig/body_joints.h"
 
@@ -31,18 +33,6 @@ struct Person {
   std::vector<bool> counted;
 };
 
-std::vector<std::filesystem::path> charactersBelow(const std::filesystem::path& folder) {
-  std::vector<std::filesystem::path> files;
-  std::error_code error;
-  for (std::filesystem::recursive_directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-    const std::string extension = it->path().extension().string();
-    if (extension == ".glb" || extension == ".gltf" || extension == ".fbx") files.push_back(it->path());
-  }
-  if (error) throw Error(ErrorCode::kFile, error.message(), folder.string());
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
 std::optional<Person> readPerson(const std::filesystem::path& path) {
   const Asset asset = readAsset(path);
   if (!hasRig(asset)) return std::nullopt;
@@ -54,7 +44,7 @@ std::optional<Person> readPerson(const std::filesystem::path& path) {
 
 std::vector<Person> peopleBelow(const std::filesystem::path& folder, Warnings& skipped) {
   std::vector<Person> people;
-  for (const std::filesystem::path& path : charactersBelow(folder)) {
+  for (const std::filesystem::path& path : filesBelow(folder, {".glb", ".gltf", ".fbx"})) {
     try {
       if (std::optional<Person> person = readPerson(path)) people.push_back(std::move(*person));
     } catch (const Error& error) {
@@ -111,10 +101,7 @@ SkinnedModel byParts(const SkinnedModel& model) {
 // Joints of the truth, by name, that hold nothing in the source: weights on them cannot come from it. Each such weight
 // is missing on its joint and too much on another, so it counts twice (WeightComparison::l1).
 double outOfReach(const SkinnedModel& source, const SkinnedModel& truth) {
-  std::vector<bool> holds(source.skeleton.jointCount(), false);
-  for (std::size_t i = 0; i < source.weights.joints.size(); ++i) {
-    if (source.weights.weights[i] > 0) holds[source.weights.joints[i]] = true;
-  }
+  const std::vector<bool> holds = weightedJoints(source.weights, source.skeleton.jointCount());
   const std::vector<Index> partner = pairJoints(truth.skeleton, source.skeleton);
   const SkinWeights weights = strongestFour(truth.weights);
   double sum = 0;
@@ -158,24 +145,6 @@ TransferTrial tryTransfer(const Person& source, const Person& target, const Tran
   return trial;
 }
 
-struct TransferMeans {
-  double count = 0, mean = 0, worst = 0, l1 = 0, outOfReach = 0, seconds = 0;
-};
-
-TransferMeans meansOf(const TransferFolder& folder, bool ofFamilies) {
-  TransferMeans sum;
-  for (const TransferTrial& trial : folder.trials) {
-    if (trial.isFamily != ofFamilies) continue;
-    ++sum.count;
-    sum.mean += trial.rig.namedMean;
-    sum.worst += trial.rig.namedWorst;
-    sum.l1 += trial.weightsL1;
-    sum.outOfReach += trial.outOfReachL1;
-    sum.seconds += trial.seconds;
-  }
-  return sum;
-}
-
 }  // namespace
 
 std::vector<TransferTrial> tryTransfers(const std::filesystem::path& folder, const TransferTrialOptions& options,
@@ -207,38 +176,39 @@ std::vector<TransferTrial> tryTransfers(const std::filesystem::path& folder, con
   return trials;
 }
 
-std::string transferTable(std::span<const TransferFolder> folders) {
-  std::string table =
-      "| folder | rigs | pairs | named joints off by (% of height) | worst joint, mean | weights L1 | of it out of "
-      "reach | s |\n"
-      "|---|---|---|---|---|---|---|---|\n";
+Table transferTable(std::span<const TransferFolder> folders) {
+  using Trial = TransferTrial;
+  const std::vector<RowMeasure<Trial>> measures = {
+      {"named joints off by (% of height)", decimals(2), Statistic::kMean,
+       [](const Trial& trial) { return trial.rig.namedMean; }},
+      {"worst joint, mean", decimals(2), Statistic::kMean, [](const Trial& trial) { return trial.rig.namedWorst; }},
+      {"weights L1", decimals(3), Statistic::kMean, &Trial::weightsL1},
+      {"of it out of reach", decimals(3), Statistic::kMean, &Trial::outOfReachL1},
+      {"s", decimals(2), Statistic::kMean, &Trial::seconds}};
+  Table table = summaryTable({words("folder"), words("rigs"), number("pairs", 0)}, measures);
   for (const TransferFolder& folder : folders) {
     for (const bool ofFamilies : {true, false}) {
-      const TransferMeans sum = meansOf(folder, ofFamilies);
-      if (sum.count == 0) continue;
-      table +=
-          fmt::format("| {} | {} | {} | {:.2f} | {:.2f} | {:.3f} | {:.3f} | {:.2f} |\n", folder.name,
-                      ofFamilies ? "same joints" : "other makers'", sum.count, sum.mean / sum.count,
-                      sum.worst / sum.count, sum.l1 / sum.count, sum.outOfReach / sum.count, sum.seconds / sum.count);
+      const RowGroup<Trial> group =
+          rowsWhere<Trial>(folder.trials, [&](const Trial& trial) { return trial.isFamily == ofFamilies; });
+      addSummary({folder.name, ofFamilies ? "same joints" : "other makers'", group.size()}, group, measures, table);
     }
   }
   return table;
 }
 
-std::string eachTransferTrial(std::span<const TransferFolder> folders) {
-  std::string text =
-      "folder\tsource\ttarget\tfamily\tnamed_mean\tnamed_worst\tworst_joint\tweights_l1\tout_of_reach\tdeform_p95\ts\n";
+Table eachTransferTrial(std::span<const TransferFolder> folders) {
+  Table table{{words("folder"), words("source"), words("target"), number("family", 0), number("named_mean", 3),
+               number("named_worst", 3), words("worst_joint"), number("weights_l1", 4), number("out_of_reach", 4),
+               number("deform_p95", 3), number("s", 2)}};
   for (const TransferFolder& folder : folders) {
     for (const TransferTrial& t : folder.trials) {
       const auto worst = std::max_element(t.rig.named.begin(), t.rig.named.end(),
                                           [](const auto& a, const auto& b) { return a.percent < b.percent; });
-      text += fmt::format("{}\t{}\t{}\t{}\t{:.3f}\t{:.3f}\t{}\t{:.4f}\t{:.4f}\t{:.3f}\t{:.2f}\n", folder.name, t.source,
-                          t.target, t.isFamily ? 1 : 0, t.rig.namedMean, t.rig.namedWorst,
-                          worst == t.rig.named.end() ? "" : worst->bone, t.weightsL1, t.outOfReachL1, t.deformP95,
-                          t.seconds);
+      table.add({folder.name, t.source, t.target, t.isFamily, t.rig.namedMean, t.rig.namedWorst,
+                 worst == t.rig.named.end() ? "" : worst->bone, t.weightsL1, t.outOfReachL1, t.deformP95, t.seconds});
     }
   }
-  return text;
+  return table;
 }
 
 }  // namespace limber

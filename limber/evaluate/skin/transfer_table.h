@@ -11,6 +11,7 @@
 #include "limber/document/asset.h"
 #include "limber/evaluate/rig/rig_metrics.h"
 #include "limber/evaluate/skin/weight_metrics.h"
+#include "limber/report/table.h"
 
 namespace limber {
 
@@ -43,8 +44,8 @@ struct TransferFolder {
   std::vector<TransferTrial> trials;
 };
 
-// A Markdown table of means: two lines for each folder, and the figures of each trial as tab separated values.
-std::string transferTable(std::span<const TransferFolder> folders);
-std::string eachTransferTrial(std::span<const TransferFolder> folders);
+// Means: two lines for each folder; and a line for each trial.
+Table transferTable(std::span<const TransferFolder> folders);
+Table eachTransferTrial(std::span<const TransferFolder> folders);
 
 }  // namespace limber

@@ -134,14 +134,14 @@ TransferTrial trialOf(bool isFamily, double mean, double worst, double l1) {
 TEST(TransferTable, HasMeansOfEachKind) {
   const TransferFolder folder{"tune",
                               {trialOf(true, 1, 4, 0.25), trialOf(true, 2, 8, 0.75), trialOf(false, 3, 9, 1.5)}};
-  const std::string table = transferTable(std::vector{folder, TransferFolder{"empty", {}}});
+  const std::string table = toMarkdown(transferTable(std::vector{folder, TransferFolder{"empty", {}}}));
   EXPECT_THAT(table, HasSubstr("| tune | same joints | 2 | 1.50 | 6.00 | 0.500 | 0.100 | 2.00 |\n"));
   EXPECT_THAT(table, HasSubstr("| tune | other makers' | 1 | 3.00 | 9.00 | 1.500 | 0.300 | 2.00 |\n"));
   EXPECT_EQ(table.find("empty"), std::string::npos);
 }
 
 TEST(TransferTable, TellsEachTrialWithItsWorstJoint) {
-  const std::string text = eachTransferTrial(std::vector{TransferFolder{"tune", {trialOf(true, 1, 4, 0.25)}}});
+  const std::string text = toTsv(eachTransferTrial(std::vector{TransferFolder{"tune", {trialOf(true, 1, 4, 0.25)}}}));
   EXPECT_THAT(text, HasSubstr("\ntune\tfrom\tto\t1\t1.000\t4.000\tleftHand\t0.2500\t0.0500\t0.000\t2.00\n"));
 }
 

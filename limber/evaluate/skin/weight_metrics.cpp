@@ -10,8 +10,8 @@
 #include "limber/deform/linear_blend.h"
 #include "limber/evaluate/pairing.h"
 #include "limber/evaluate/skin/random_pose.h"
-#include "limber/geometry/mesh/edge_groups.h"
 #include "limber/geometry/mesh/prepare.h"
+#include "limber/geometry/surface/surface_edges.h"
 
 namespace limber {
 
@@ -148,27 +148,29 @@ void measureSmoothness(const SkinnedModel& truth, const PairedSkins& skins, Weig
   const PreparedMesh welded = prepareMesh(truth.mesh.positions, truth.mesh.triangles, truth.stored);
   std::vector<Index> sourceVertex(welded.mesh.vertexCount(), kNoIndex);
   for (Index v = truth.mesh.vertexCount(); v-- > 0;) sourceVertex[welded.weldedVertex[v]] = v;
-  const EdgeGroups edges(welded.mesh.triangles, welded.mesh.vertexCount());
-  double count = 0;
-  edges.forEachEdge([&](std::span<const Index> sides) {
-    const Index a = sourceVertex[edges.low(sides[0])], b = sourceVertex[edges.high(sides[0])];
-    report.smoothness += weightDifference(skins.result, a, skins.result, b);
-    report.truthSmoothness += weightDifference(skins.truth, a, skins.truth, b);
-    ++count;
-  });
-  report.smoothness /= count;
-  report.truthSmoothness /= count;
-}
-
-Index countUsedJoints(const SkinWeights& weights, Index jointCount) {
-  std::vector<bool> used(jointCount, false);
-  for (std::size_t i = 0; i < weights.joints.size(); ++i) {
-    if (weights.weights[i] > 0) used[weights.joints[i]] = true;
+  const std::vector<VertexPair> edges = surfaceEdges(welded.mesh).edges;
+  for (const auto& [a, b] : edges) {
+    report.smoothness += weightDifference(skins.result, sourceVertex[a], skins.result, sourceVertex[b]);
+    report.truthSmoothness += weightDifference(skins.truth, sourceVertex[a], skins.truth, sourceVertex[b]);
   }
-  return static_cast<Index>(std::count(used.begin(), used.end(), true));
+  report.smoothness /= static_cast<double>(edges.size());
+  report.truthSmoothness /= static_cast<double>(edges.size());
 }
 
 }  // namespace
+
+std::vector<bool> weightedJoints(const SkinWeights& weights, Index jointCount) {
+  std::vector<bool> hasWeight(jointCount, false);
+  for (std::size_t i = 0; i < weights.joints.size(); ++i) {
+    if (weights.weights[i] > 0) hasWeight[weights.joints[i]] = true;
+  }
+  return hasWeight;
+}
+
+Index countWeightedJoints(const SkinWeights& weights, Index jointCount) {
+  const std::vector<bool> hasWeight = weightedJoints(weights, jointCount);
+  return static_cast<Index>(std::count(hasWeight.begin(), hasWeight.end(), true));
+}
 
 double weightDifference(const SkinWeights& a, Index va, const SkinWeights& b, Index vb) {
   double sum = 0;
@@ -210,7 +212,7 @@ SkinWeights strongestFour(const SkinWeights& weights) {
 WeightComparison compareWeights(const SkinnedModel& result, const SkinnedModel& truth) {
   WeightComparison report;
   report.joints = truth.skeleton.jointCount();
-  report.usedJoints = countUsedJoints(truth.weights, report.joints);
+  report.usedJoints = countWeightedJoints(truth.weights, report.joints);
   const PairedSkins skins = pairSkins(result, truth, report);
   measureInfluences(skins, report);
   measureDeformation(skins, truth.skeleton, result.skeleton.jointCount(), report);

@@ -1,6 +1,8 @@
 // How near skin weights come to those that an artist made.
 #pragma once
 
+#include <vector>
+
 #include "limber/evaluate/skin/skinned_model.h"
 
 namespace limber {
@@ -33,6 +35,10 @@ struct WeightComparison {
 // kUnsupported where one of the two has no rig, kBadData where no vertex of the one lies on a vertex of the other.
 WeightComparison compareWeights(const SkinnedModel& result, const SkinnedModel& truth);
 WeightComparison compareWeights(const Character& result, const Character& truth);
+
+// Which of the joints have a weight above 0 on some vertex, and how many they are.
+std::vector<bool> weightedJoints(const SkinWeights& weights, Index jointCount);
+Index countWeightedJoints(const SkinWeights& weights, Index jointCount);
 
 // The four strongest influences of each vertex, strongest first, to a sum of 1; all 0 where there was none.
 SkinWeights strongestFour(const SkinWeights& weights);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <utility>
 
@@ -12,7 +13,7 @@
 #include "limber/core/text/split_text.h"
 #include "limber/document/read.h"
 #include "limber/document/rig/rig_io.h"
-#include "limber/evaluate/median.h"
+#include "limber/evaluate/group_summary.h"
 #include "limber/evaluate/model_files.h"
 
 namespace limber {
@@ -38,22 +39,14 @@ std::vector<WeightTableRow> compareFolder(const std::filesystem::path& folder, c
                                           Progress& progress, Warnings& skipped) {
   const std::vector<std::filesystem::path> files = modelsBelow(folder);
   std::vector<WeightTableRow> rows;
-  progress.stage("compare weights");
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    progress.update(static_cast<double>(i) / static_cast<double>(files.size()));
-    try {
-      if (std::optional<WeightTableRow> row = compareFile(files[i], reweight)) {
-        row->folder = lastName(folder);
-        rows.push_back(std::move(*row));
-      } else {
-        skipped.add("without-rig", "files without a rig left out", files[i].filename().string());
-      }
-    } catch (const Error& error) {
-      if (error.code() == ErrorCode::kCancelled) throw;
-      skipped.add("unreadable", "files that cannot be compared left out", error.what());
+  forEachFile(files.size(), "compare weights", kNotCompared, progress, skipped, [&](std::size_t i) {
+    if (std::optional<WeightTableRow> row = compareFile(files[i], reweight)) {
+      row->folder = lastName(folder);
+      rows.push_back(std::move(*row));
+    } else {
+      skipped.add("without-rig", "files without a rig left out", files[i].filename().string());
     }
-  }
-  progress.finish();
+  });
   return rows;
 }
 
@@ -103,121 +96,91 @@ std::vector<PairedRow> pairRows(std::span<const WeightTableRow> rows, std::span<
   return pairs;
 }
 
-std::string fileLine(const PairedRow& pair) {
-  const WeightComparison& c = pair.row->comparison;
-  std::string l1Others = "| | |", deformOthers = "| | |", mark;
-  if (const WeightReference* r = pair.reference) {
-    l1Others = fmt::format("| {:.3f} | {:.3f} |", r->l1, r->l1Nearest);
-    deformOthers = fmt::format("| {:.3f} | {:.3f} |", r->deform, r->deformNearest);
-    mark = r->madeByHeat ? " *" : "";
-  }
-  return fmt::format("| {}{} | {}/{} | {:.3f} {} {:.2f} | {:.2f} | {:.3f} {} {:.2f} | {:.3f}/{:.3f} | {} | {:.3f} |\n",
-                     pair.row->file, mark, c.usedJoints, c.joints, c.l1, l1Others, c.precision, c.recall, c.deformMean,
-                     deformOthers, c.deformP95, c.smoothness, c.truthSmoothness, c.unweighted, pair.row->seconds);
+// Of the reference only over files that it has.
+std::function<std::optional<double>(const PairedRow&)> ofReference(double WeightReference::*member) {
+  return [=](const PairedRow& pair) { return pair.reference ? std::optional(pair.reference->*member) : std::nullopt; };
 }
 
-// Means over the files of one group; of the reference only over files that it has.
-struct Means {
-  std::size_t count = 0;
-  double precision = 0, recall = 0, seconds = 0;
-  double l1 = 0, deform = 0, deformMedian = 0, p95 = 0, l1Reference = 0, deformReference = 0, deformReferenceMedian = 0;
-  Index unweighted = 0;
-};
-
-template <typename Belongs>
-Means meansOf(std::span<const PairedRow> pairs, Belongs belongs) {
-  Means means;
-  std::vector<double> deform, deformReference;
-  for (const PairedRow& pair : pairs) {
-    if (!belongs(pair)) continue;
-    const WeightComparison& c = pair.row->comparison;
-    ++means.count;
-    means.precision += c.precision;
-    means.recall += c.recall;
-    means.seconds += pair.row->seconds;
-    means.l1 += c.l1;
-    means.deform += c.deformMean;
-    means.p95 += c.deformP95;
-    means.unweighted += c.unweighted;
-    deform.push_back(c.deformMean);
-    if (!pair.reference) continue;
-    means.l1Reference += pair.reference->l1;
-    means.deformReference += pair.reference->deform;
-    deformReference.push_back(pair.reference->deform);
-  }
-  if (means.count == 0) return means;
-  for (double* sum : {&means.precision, &means.recall, &means.seconds, &means.l1, &means.deform, &means.p95})
-    *sum /= static_cast<double>(means.count);
-  means.deformMedian = median(deform);
-  if (deformReference.empty()) return means;
-  means.l1Reference /= static_cast<double>(deformReference.size());
-  means.deformReference /= static_cast<double>(deformReference.size());
-  means.deformReferenceMedian = median(deformReference);
-  return means;
+std::function<std::optional<double>(const PairedRow&)> ofResult(double WeightComparison::*member) {
+  return [=](const PairedRow& pair) { return pair.row->comparison.*member; };
 }
 
-template <typename Belongs>
-std::string meansLine(std::string_view name, std::span<const PairedRow> pairs, Belongs belongs) {
-  const Means m = meansOf(pairs, belongs);
-  if (m.count == 0) return {};
-  const auto other = [&](double value) { return value > 0 ? fmt::format("{:.3f}", value) : std::string(); };
-  return fmt::format("| {} | {} | {:.3f} | {} | {:.3f} | {} | {:.3f} | {} | {:.2f} | {} |\n", name, m.count, m.l1,
-                     other(m.l1Reference), m.deform, other(m.deformReference), m.deformMedian,
-                     other(m.deformReferenceMedian), m.p95, m.unweighted);
+double leftOut(const PairedRow& pair) {
+  return pair.row->comparison.unweighted;
 }
 
-void addOnce(const std::string& name, std::vector<std::string>& names) {
-  if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-}
-
-std::string meansTable(std::span<const PairedRow> pairs) {
-  std::string table =
-      "| characters | files | L1 | Blender | deform | Blender | median | Blender | p95 | left out |\n"
-      "|---|---|---|---|---|---|---|---|---|---|\n";
-  const auto known = [](const PairedRow& p) { return p.reference != nullptr; };
-  table += meansLine("all that Blender was measured on", pairs, known);
-  table += meansLine("of many pieces", pairs, [&](const PairedRow& p) { return known(p) && p.reference->manyPieces; });
-  table += meansLine("others", pairs, [&](const PairedRow& p) { return known(p) && !p.reference->manyPieces; });
-  table += meansLine("not made with Blender's weights", pairs,
-                     [&](const PairedRow& p) { return known(p) && !p.reference->madeByHeat; });
-  std::vector<std::string> folders;
+Table meansTable(std::span<const PairedRow> pairs) {
+  const std::vector<RowMeasure<PairedRow>> measures = {
+      {"L1", decimals(3), Statistic::kMean, ofResult(&WeightComparison::l1)},
+      {"Blender", decimals(3), Statistic::kMean, ofReference(&WeightReference::l1)},
+      {"deform", decimals(3), Statistic::kMean, ofResult(&WeightComparison::deformMean)},
+      {"Blender", decimals(3), Statistic::kMean, ofReference(&WeightReference::deform)},
+      {"median", decimals(3), Statistic::kMedian, ofResult(&WeightComparison::deformMean)},
+      {"Blender", decimals(3), Statistic::kMedian, ofReference(&WeightReference::deform)},
+      {"p95", decimals(2), Statistic::kMean, ofResult(&WeightComparison::deformP95)},
+      {"left out", decimals(0), Statistic::kSum, leftOut}};
+  Table table = summaryTable({words("characters"), number("files", 0)}, measures);
+  const auto add = [&](std::string name, const auto& isIn) {
+    const RowGroup<PairedRow> group = rowsWhere(pairs, isIn);
+    addSummary({std::move(name), group.size()}, group, measures, table);
+  };
+  add("all that Blender was measured on", [](const PairedRow& p) { return p.reference != nullptr; });
+  add("of many pieces", [](const PairedRow& p) { return p.reference && p.reference->manyPieces; });
+  add("others", [](const PairedRow& p) { return p.reference && !p.reference->manyPieces; });
+  add("not made with Blender's weights", [](const PairedRow& p) { return p.reference && !p.reference->madeByHeat; });
+  std::vector<WeightTableRow> unknown;
   for (const PairedRow& p : pairs) {
-    if (!known(p)) addOnce(p.row->folder, folders);
+    if (!p.reference) unknown.push_back(*p.row);
   }
-  for (const std::string& folder : folders) {
-    table += meansLine("without figures of Blender" + (folder.empty() ? "" : ", " + folder), pairs,
-                       [&](const PairedRow& p) { return !known(p) && p.row->folder == folder; });
+  for (const std::string& folder : namesIn<WeightTableRow>(unknown, &WeightTableRow::folder)) {
+    add("without figures of Blender" + (folder.empty() ? "" : ", " + folder),
+        [&](const PairedRow& p) { return !p.reference && p.row->folder == folder; });
+  }
+  return table;
+}
+
+Table filesTable(std::span<const PairedRow> pairs) {
+  Table table{{words("file"), words("joints used/all"), number("L1", 3), number("Blender", 3), number("nearest", 3),
+               number("precision", 2), number("recall", 2), number("deform", 3), number("Blender", 3),
+               number("nearest", 3), number("p95", 2), words("smooth/artist"), number("left out", 0), number("s", 3)}};
+  for (const PairedRow& pair : pairs) {
+    const WeightComparison& c = pair.row->comparison;
+    const auto other = [&](double WeightReference::*member) { return ofReference(member)(pair); };
+    table.add({pair.row->file + (pair.reference && pair.reference->madeByHeat ? " *" : ""),
+               fmt::format("{}/{}", c.usedJoints, c.joints), c.l1, other(&WeightReference::l1),
+               other(&WeightReference::l1Nearest), c.precision, c.recall, c.deformMean, other(&WeightReference::deform),
+               other(&WeightReference::deformNearest), c.deformP95,
+               fmt::format("{:.3f}/{:.3f}", c.smoothness, c.truthSmoothness), c.unweighted, pair.row->seconds});
   }
   return table;
 }
 
 }  // namespace
 
-std::string weightTable(std::span<const WeightTableRow> rows, std::span<const WeightReference> references) {
+std::vector<Table> weightTables(std::span<const WeightTableRow> rows, std::span<const WeightReference> references) {
   const std::vector<PairedRow> pairs = pairRows(rows, references);
-  std::string table = meansTable(pairs);
-  table +=
-      "\n| file | joints used/all | L1 | Blender | nearest | precision | recall | deform | Blender | nearest | p95 | "
-      "smooth/artist | left out | s |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
-  for (const PairedRow& pair : pairs) table += fileLine(pair);
-  return table;
+  return {meansTable(pairs), filesTable(pairs)};
 }
 
-std::string weightMethodTable(std::span<const MethodRows> methods) {
-  std::string table =
-      "| files | method | L1 | precision | recall | deform | median | p95 | left out | s |\n"
-      "|---|---|---|---|---|---|---|---|---|---|\n";
-  std::vector<std::string> folders;
-  for (const MethodRows& method : methods) {
-    for (const WeightTableRow& row : method.rows) addOnce(row.folder, folders);
-  }
-  for (const std::string& folder : folders) {
+Table weightMethodTable(std::span<const MethodRows> methods) {
+  const std::vector<RowMeasure<PairedRow>> measures = {
+      {"L1", decimals(3), Statistic::kMean, ofResult(&WeightComparison::l1)},
+      {"precision", decimals(2), Statistic::kMean, ofResult(&WeightComparison::precision)},
+      {"recall", decimals(2), Statistic::kMean, ofResult(&WeightComparison::recall)},
+      {"deform", decimals(3), Statistic::kMean, ofResult(&WeightComparison::deformMean)},
+      {"median", decimals(3), Statistic::kMedian, ofResult(&WeightComparison::deformMean)},
+      {"p95", decimals(2), Statistic::kMean, ofResult(&WeightComparison::deformP95)},
+      {"left out", decimals(0), Statistic::kSum, leftOut},
+      {"s", decimals(3), Statistic::kMean, [](const PairedRow& pair) { return pair.row->seconds; }}};
+  Table table = summaryTable({words("files"), words("method")}, measures);
+  std::vector<WeightTableRow> all;
+  for (const MethodRows& method : methods) all.insert(all.end(), method.rows.begin(), method.rows.end());
+  for (const std::string& folder : namesIn<WeightTableRow>(all, &WeightTableRow::folder)) {
     for (const MethodRows& method : methods) {
-      const Means m = meansOf(pairRows(method.rows, {}), [&](const PairedRow& p) { return p.row->folder == folder; });
-      if (m.count == 0) continue;
-      table += fmt::format("| {} ({}) | {} | {:.3f} | {:.2f} | {:.2f} | {:.3f} | {:.3f} | {:.2f} | {} | {:.3f} |\n",
-                           folder, m.count, method.method, m.l1, m.precision, m.recall, m.deform, m.deformMedian, m.p95,
-                           m.unweighted, m.seconds);
+      const std::vector<PairedRow> pairs = pairRows(method.rows, {});
+      const RowGroup<PairedRow> group =
+          rowsWhere<PairedRow>(pairs, [&](const PairedRow& p) { return p.row->folder == folder; });
+      addSummary({fmt::format("{} ({})", folder, group.size()), method.method}, group, measures, table);
     }
   }
   return table;
@@ -255,7 +218,7 @@ Models put together from parts, each of which turns about its joint, get no heat
 0.15 the mean hardly changes there) were chosen on `tune`, where the mean L1 fell from 0.654 to 0.362; on `check`, which was only
 measured, it fell from 0.553 to 0.475. No other file changed.
 
-)" + weightTable(rows, references);
+)" + toMarkdown(weightTables(rows, references));
 }
 
 }  // namespace limber

@@ -11,6 +11,7 @@
 #include "limber/core/error.h"
 #include "limber/core/progress.h"
 #include "limber/evaluate/skin/weight_metrics.h"
+#include "limber/report/table.h"
 
 namespace limber {
 
@@ -41,19 +42,18 @@ struct WeightReference {
 // line that is no comment (#) names the columns. Throws Error kBadData naming the line.
 std::vector<WeightReference> parseWeightReferences(std::string_view text);
 
-// A Markdown table with a line for each row, the reference's figures beside, and a table of means over the groups;
-// files without a reference are a group for each folder.
-// References may be empty.
-std::string weightTable(std::span<const WeightTableRow> rows, std::span<const WeightReference> references);
+// Means over the groups, and a line for each row with the reference's figures beside; files without a reference are a
+// group for each folder. References may be empty.
+std::vector<Table> weightTables(std::span<const WeightTableRow> rows, std::span<const WeightReference> references);
 
-// A Markdown table of means, a line for each folder and method: the methods side by side over the same files.
+// Means, a line for each folder and method: the methods side by side over the same files.
 struct MethodRows {
   std::string method;
   std::vector<WeightTableRow> rows;
 };
-std::string weightMethodTable(std::span<const MethodRows> methods);
+Table weightMethodTable(std::span<const MethodRows> methods);
 
-// docs/weights.md: what was measured and how, then weightTable.
+// docs/weights.md: what was measured and how, then weightTables, in Markdown.
 std::string weightPage(std::span<const WeightTableRow> rows, std::span<const WeightReference> references);
 
 }  // namespace limber

@@ -58,32 +58,32 @@ TEST(WeightMethodTable, HasALineForEachFolderAndMethod) {
     method.rows[0].folder = "tune";
     method.rows[1].folder = "check";
   }
-  const std::string table = weightMethodTable(methods);
+  const std::string table = toMarkdown(weightMethodTable(methods));
   EXPECT_THAT(table, HasSubstr("| tune (1) | heat | 0.200 |"));
   EXPECT_THAT(table, HasSubstr("| check (1) | voxel | 1.000 | 1.00 | 1.00 | 5.000 | 5.000 |"));
 }
 
 TEST(WeightTable, MeansCompareTheSameFilesOnly) {
   const std::vector<WeightTableRow> rows = {row("fox", 0.2, 0.3), row("robot", 0.4, 0.5), row("stranger", 1, 8)};
-  const std::string table = weightTable(rows, parseWeightReferences(kReferences));
+  const std::string table = toMarkdown(weightTables(rows, parseWeightReferences(kReferences)));
   EXPECT_THAT(table, HasSubstr("| all that Blender was measured on | 2 | 0.300 | 0.300 | 0.400 | 0.875 |"));
   EXPECT_THAT(table, HasSubstr("| of many pieces | 1 | 0.400 | 0.500 | 0.500 | 1.500 |"));
-  EXPECT_THAT(table, HasSubstr("| without figures of Blender | 1 | 1.000 |  | 8.000 |  |"));
+  EXPECT_THAT(table, HasSubstr("| without figures of Blender | 1 | 1.000 | - | 8.000 | - |"));
   std::vector<WeightTableRow> more = rows;
   for (const char* folder : {"tune", "check"}) {
     more.push_back(row("beast", 0.5, 2));
     more.back().folder = folder;
   }
-  const std::string byFolder = weightTable(more, parseWeightReferences(kReferences));
-  EXPECT_THAT(byFolder, HasSubstr("| without figures of Blender, tune | 1 | 0.500 |  | 2.000 |"));
-  EXPECT_THAT(byFolder, HasSubstr("| without figures of Blender, check | 1 | 0.500 |  | 2.000 |"));
+  const std::string byFolder = toMarkdown(weightTables(more, parseWeightReferences(kReferences)));
+  EXPECT_THAT(byFolder, HasSubstr("| without figures of Blender, tune | 1 | 0.500 | - | 2.000 |"));
+  EXPECT_THAT(byFolder, HasSubstr("| without figures of Blender, check | 1 | 0.500 | - | 2.000 |"));
   EXPECT_THAT(table, HasSubstr("| fox * |"));
   EXPECT_THAT(table, HasSubstr("| robot |"));
 }
 
 TEST(WeightTable, EveryLineHasTheColumnsOfItsHead) {
   const std::vector<WeightTableRow> rows = {row("fox", 0.2, 0.3), row("stranger", 1, 8)};
-  const std::string table = weightTable(rows, parseWeightReferences(kReferences));
+  const std::string table = toMarkdown(weightTables(rows, parseWeightReferences(kReferences)));
   std::vector<std::ptrdiff_t> bars;
   for (std::size_t begin = 0; begin < table.size();) {
     const std::size_t end = table.find('\n', begin);
@@ -98,7 +98,7 @@ TEST(WeightTable, EveryLineHasTheColumnsOfItsHead) {
 
 TEST(WeightTable, WithoutReferencesThereAreNoFiguresOfOthers) {
   const std::vector<WeightTableRow> rows = {row("fox", 0.2, 0.3)};
-  EXPECT_THAT(weightTable(rows, {}), Not(HasSubstr("all that Blender")));
+  EXPECT_THAT(toMarkdown(weightTables(rows, {})), Not(HasSubstr("all that Blender")));
 }
 
 TEST(CompareFolder, MissingFolderIsAnError) {

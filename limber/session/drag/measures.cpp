@@ -124,7 +124,7 @@ Json measuresToJson(const SessionMeasures& measures) {
           {"stretch", measures.stretch},
           {"volume", measures.volume},
           {"target_distance", measures.targetDistance ? Json(*measures.targetDistance) : Json(nullptr)},
-          {"motion", measures.motion ? Json::parse(motionMetricsJson(*measures.motion)) : Json(nullptr)}};
+          {"motion", measures.motion ? toJson(*measures.motion) : Json(nullptr)}};
 }
 
 }  // namespace limber

@@ -23,7 +23,7 @@ struct SessionMeasures {
 SessionMeasures measureSession(const Session& session);
 
 // {"joints", "influences", "smoothness", "stretch", "volume", "target_distance": or null, "motion": or null, as
-// motionMetricsJson gives it}
+// toJson gives it}
 Json measuresToJson(const SessionMeasures& measures);
 
 }  // namespace limber

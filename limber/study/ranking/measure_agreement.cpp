@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "limber/core/error.h"
+#include "limber/study/ranking/paired_statistics.h"
 
 namespace limber {
 
@@ -20,19 +20,6 @@ constexpr std::size_t kMinMethods = 3;  // two agree or not by chance alone
 // Of one method on one model.
 using MethodValues = std::map<std::string, double, std::less<>>;  // by the measure's name
 using ModelMethods = std::map<std::string, MethodValues>;         // by the method's names
-
-// Each value's rank from 0, ties at their mean.
-std::vector<double> meanRanks(std::span<const double> values) {
-  std::vector<std::size_t> order(values.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
-  std::vector<double> ranks(values.size());
-  for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
-    while (end < order.size() && values[order[end]] == values[order[begin]]) ++end;
-    for (std::size_t i = begin; i < end; ++i) ranks[order[i]] = 0.5 * static_cast<double>(begin + end - 1);
-  }
-  return ranks;
-}
 
 std::string textOf(const Json& row, const char* key) {
   const auto found = row.find(key);
@@ -122,7 +109,7 @@ std::vector<MeasureAgreement> measureAgreement(std::span<const Json> cells) {
   return agreements;
 }
 
-std::string agreementTable(std::span<const MeasureAgreement> agreements) {
+Table agreementTable(std::span<const MeasureAgreement> agreements) {
   std::vector<const Measure*> rows, columns;
   std::map<std::pair<const Measure*, const Measure*>, const MeasureAgreement*> found;
   for (const MeasureAgreement& one : agreements) found[{one.measure, one.truth}] = &one;
@@ -133,20 +120,14 @@ std::string agreementTable(std::span<const MeasureAgreement> agreements) {
     if (isIn(&MeasureAgreement::measure)) rows.push_back(&measure);
     if (isIn(&MeasureAgreement::truth)) columns.push_back(&measure);
   }
-  std::string head = "| measure |", line = "| --- |";
-  for (const Measure* truth : columns) {
-    head += fmt::format(" `{}` |", truth->name);
-    line += " --- |";
-  }
-  std::string table = head + "\n" + line + "\n";
+  Table table{{words("measure")}};
+  for (const Measure* truth : columns) table.columns.push_back(words(fmt::format("`{}`", truth->name)));
   for (const Measure* measure : rows) {
-    table += fmt::format("| `{}` |", measure->name);
-    for (const Measure* truth : columns) {
+    table.addAcross(fmt::format("`{}`", measure->name), columns, [&](const Measure* truth) {
       const auto one = found.find({measure, truth});
-      table += one == found.end() ? std::string(" |")
-                                  : fmt::format(" {:.2f} ({}) |", one->second->correlation, one->second->models);
-    }
-    table += "\n";
+      return one == found.end() ? Cell()
+                                : Cell(fmt::format("{:.2f} ({})", one->second->correlation, one->second->models));
+    });
   }
   return table;
 }

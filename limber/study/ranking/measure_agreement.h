@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "limber/report/table.h"
 #include "limber/study/measure.h"
 
 namespace limber {
@@ -28,7 +29,7 @@ struct MeasureAgreement {
 // Pairs without any model are left out; in the measures' order. Throws Error kBadData where a document is none such.
 std::vector<MeasureAgreement> measureAgreement(std::span<const Json> cells);
 
-// In Markdown: a line for each measure without a truth, a column for each that knows it.
-std::string agreementTable(std::span<const MeasureAgreement> agreements);
+// A line for each measure without a truth, a column for each that knows it.
+Table agreementTable(std::span<const MeasureAgreement> agreements);
 
 }  // namespace limber

@@ -77,7 +77,7 @@ TEST(MeasureAgreement, IsTheMeanOverModelsOfWhatIsBetter) {
   EXPECT_EQ(agreements[0].truth->name, "weight_l1");
   EXPECT_EQ(agreements[0].models, 2u);
   EXPECT_NEAR(agreements[0].correlation, 0.75, 1e-12);
-  EXPECT_THAT(agreementTable(agreements), HasSubstr("| `stretch` | 0.75 (2) |"));
+  EXPECT_THAT(toMarkdown(agreementTable(agreements)), HasSubstr("| `stretch` | 0.75 (2) |"));
 }
 
 // More coverage is better, more distance is worse.

@@ -122,13 +122,6 @@ MethodPair pairOf(const std::string& first, const std::string& second, const std
   return pair;
 }
 
-void correct(std::vector<MethodPair>& pairs) {
-  std::vector<double> p;
-  for (const MethodPair& pair : pairs) p.push_back(pair.p);
-  const std::vector<double> corrected = holmCorrected(p);
-  for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i].p = corrected[i];
-}
-
 // Values as they are measured again, not as losses.
 void turnBack(MethodScore& score) {
   MedianInterval& value = score.value;
@@ -158,6 +151,23 @@ std::vector<std::size_t> worstCells(const StudyResult& study, const Grid& grid, 
 }
 
 }  // namespace
+
+void correctForAll(std::span<MethodPair> pairs) {
+  std::vector<double> p;
+  for (const MethodPair& pair : pairs) p.push_back(pair.p);
+  const std::vector<double> corrected = holmCorrected(p);
+  for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i].p = corrected[i];
+}
+
+Table pairTable(std::span<const MethodPair> pairs, std::string_view ties) {
+  Table table{{words("method"), words("against"), number("better", 0), number("worse", 0), number(std::string(ties), 0),
+               significant("p", 3)}};
+  for (const MethodPair& pair : pairs) {
+    table.add({foreign(pair.first), foreign(pair.second), pair.firstWins, pair.secondWins, pair.ties, pair.p},
+              pair.first + " " + pair.second);
+  }
+  return table;
+}
 
 const MethodScore* Ranking::scoreOf(std::string_view method) const {
   const auto score = std::find_if(scores.begin(), scores.end(), [&](const auto& s) { return s.method == method; });
@@ -191,7 +201,7 @@ Ranking rankMethods(const StudyResult& study, CellKind kind, const Measure& meas
           pairOf(ranked[i].score.method, ranked[j].score.method, losses[ranked[i].method], losses[ranked[j].method]));
     }
   }
-  correct(ranking.pairs);
+  correctForAll(ranking.pairs);
   for (Ranked& one : ranked) {
     if (measure.better == Better::kMore) turnBack(one.score);
     ranking.scores.push_back(std::move(one.score));

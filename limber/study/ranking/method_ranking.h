@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "limber/report/table.h"
 #include "limber/study/ranking/paired_statistics.h"
 #include "limber/study/study_run.h"
 
@@ -27,6 +29,11 @@ struct MethodPair {
   double p = 1;           // signed rank test, corrected for all pairs of the ranking
   bool isTurned = false;  // by that test the second is the better one
 };
+
+// Holm's correction of their p for there being all of them.
+void correctForAll(std::span<MethodPair> pairs);
+// A line for each two; `ties` names the column of subjects on which they are equal.
+Table pairTable(std::span<const MethodPair> pairs, std::string_view ties);
 
 struct Ranking {
   const Measure* measure = nullptr;

@@ -15,18 +15,7 @@ constexpr int kResamples = 2000;
 constexpr double kTail = 0.025;  // on either side of the interval
 constexpr std::size_t kMaxExact = 200;
 
-// Twice the mean ranks of the magnitudes, so that those of ties are whole numbers.
-std::vector<std::size_t> doubledRanks(std::span<const double> sorted) {
-  std::vector<std::size_t> ranks(sorted.size());
-  for (std::size_t begin = 0, end = 0; begin < sorted.size(); begin = end) {
-    while (end < sorted.size() && std::abs(sorted[end]) == std::abs(sorted[begin])) ++end;
-    std::fill(ranks.begin() + static_cast<std::ptrdiff_t>(begin), ranks.begin() + static_cast<std::ptrdiff_t>(end),
-              begin + 1 + end);
-  }
-  return ranks;
-}
-
-// Doubled ranks of the differences that count, and what they add up to on either side of 0.
+// Twice the ranks of the differences that count, from 1, so that those of ties are whole numbers, and what they add up to on either side of 0.
 struct RankSums {
   std::vector<std::size_t> ranks;
   std::size_t positive = 0, negative = 0;
@@ -38,8 +27,10 @@ RankSums rankSums(std::span<const double> differences) {
     if (d != 0 && !std::isnan(d)) sorted.push_back(d);
   }
   std::sort(sorted.begin(), sorted.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+  std::vector<double> magnitudes;
+  for (const double d : sorted) magnitudes.push_back(std::abs(d));
   RankSums sums;
-  sums.ranks = doubledRanks(sorted);
+  for (const double rank : meanRanks(magnitudes)) sums.ranks.push_back(static_cast<std::size_t>(2 * (rank + 1)));
   for (std::size_t i = 0; i < sorted.size(); ++i) (sorted[i] > 0 ? sums.positive : sums.negative) += sums.ranks[i];
   return sums;
 }
@@ -73,19 +64,34 @@ double normalTail(std::span<const std::size_t> ranks, std::size_t least) {
 }  // namespace
 
 MedianInterval bootstrapMedian(std::span<const double> values) {
-  MedianInterval interval;
-  interval.median = median({values.begin(), values.end()});
   Random random(1);
   std::vector<double> medians, drawn(values.size());
   for (int i = 0; i < kResamples; ++i) {
     for (double& value : drawn) value = values[random.below(values.size())];
     medians.push_back(median(drawn));
   }
-  std::sort(medians.begin(), medians.end());
-  const auto at = [&](double part) { return medians[static_cast<std::size_t>(part * (kResamples - 1))]; };
-  interval.low = at(kTail);
-  interval.high = at(1 - kTail);
-  return interval;
+  const auto [low, high] = percentileInterval(std::move(medians));
+  return {median({values.begin(), values.end()}), low, high};
+}
+
+std::vector<double> meanRanks(std::span<const double> values) {
+  std::vector<std::size_t> order(values.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
+  std::vector<double> ranks(values.size());
+  for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
+    while (end < order.size() && values[order[end]] == values[order[begin]]) ++end;
+    for (std::size_t i = begin; i < end; ++i) ranks[order[i]] = 0.5 * static_cast<double>(begin + end - 1);
+  }
+  return ranks;
+}
+
+Interval percentileInterval(std::vector<double> samples) {
+  std::sort(samples.begin(), samples.end());
+  const auto at = [&](double part) {
+    return samples[static_cast<std::size_t>(part * static_cast<double>(samples.size() - 1))];
+  };
+  return {at(kTail), at(1 - kTail)};
 }
 
 double signedRankP(std::span<const double> differences) {

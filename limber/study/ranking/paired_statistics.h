@@ -15,6 +15,15 @@ struct MedianInterval {
 // least one value; infinite ones all of one sign.
 MedianInterval bootstrapMedian(std::span<const double> values);
 
+// Each value's rank from 0, ties at their mean.
+std::vector<double> meanRanks(std::span<const double> values);
+
+// The limits of the middle 95 % of samples.
+struct Interval {
+  double low = 0, high = 0;
+};
+Interval percentileInterval(std::vector<double> samples);
+
 // The two-sided p-value of Wilcoxon's signed rank test: how likely differences so far to one side are where both
 // methods are the same. Zeros, and differences of two infinities, are left out; ties get mean ranks. Exact (over all
 // signs) up to 200 differences, from there on by the normal distribution with corrections for ties and continuity. 1

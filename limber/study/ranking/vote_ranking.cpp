@@ -15,7 +15,6 @@
 #include "limber/core/random.h"
 #include "limber/study/ranking/bradley_terry.h"
 #include "limber/study/ranking/paired_statistics.h"
-#include "limber/study/report/markdown_text.h"
 
 namespace limber {
 
@@ -23,7 +22,6 @@ namespace {
 
 constexpr int kVoteSamples = 2000;
 constexpr std::size_t kMaxMethods = 1000;  // samples x methods are kept at once
-constexpr double kVoteTail = 0.025;        // on either side of the interval
 
 // The votes of a kind: methods by name, each two that were compared, and the votes as numbers, sorted.
 struct Games {
@@ -98,11 +96,10 @@ void addIntervals(const Games& games, std::span<VoteScore> scores) {
     const std::vector<double> chances = chancesOf(games, pairs);
     for (std::size_t m = 0; m < chances.size(); ++m) drawn[m].push_back(chances[m]);
   }
-  const auto at = [](double part) { return static_cast<std::size_t>(part * (kVoteSamples - 1)); };
   for (std::size_t m = 0; m < scores.size(); ++m) {
-    std::sort(drawn[m].begin(), drawn[m].end());
-    scores[m].low = drawn[m][at(kVoteTail)];
-    scores[m].high = drawn[m][at(1 - kVoteTail)];
+    const auto [low, high] = percentileInterval(std::move(drawn[m]));
+    scores[m].low = low;
+    scores[m].high = high;
   }
 }
 
@@ -158,14 +155,9 @@ std::vector<MethodPair> pairsOf(const Games& games, std::span<const std::size_t>
   std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) {
     return std::tie(std::get<0>(a), std::get<1>(a)) < std::tie(std::get<0>(b), std::get<1>(b));
   });
-  std::vector<double> p;
-  for (const auto& one : found) p.push_back(std::get<2>(one).p);
-  const std::vector<double> corrected = holmCorrected(p);
   std::vector<MethodPair> pairs;
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    pairs.push_back(std::move(std::get<2>(found[i])));
-    pairs.back().p = corrected[i];
-  }
+  for (auto& one : found) pairs.push_back(std::move(std::get<2>(one)));
+  correctForAll(pairs);
   return pairs;
 }
 
@@ -207,25 +199,21 @@ std::vector<VoteRanking> rankByVotes(std::span<const Vote> votes) {
   return rankings;
 }
 
-std::string voteTables(std::span<const VoteRanking> rankings) {
-  std::string text;
+std::vector<Table> voteTables(std::span<const VoteRanking> rankings) {
+  std::vector<Table> tables;
   for (const VoteRanking& ranking : rankings) {
-    text += fmt::format(
-        "{}{}: {} of {}\n\n| method | votes | chosen | strength | 95 % interval |\n"
-        "| --- | ---: | ---: | ---: | ---: |\n",
-        text.empty() ? "" : "\n", cellKindName(ranking.kind), counted(ranking.votes, "vote"),
-        counted(ranking.voters, "voter"));
+    Table& table =
+        tables.emplace_back(Table{{words("method"), number("votes", 0), number("chosen", 1, " %"),
+                                   number("strength", 1, " %"), number("95 % interval", 1)},
+                                  fmt::format("{}: {} of {}", cellKindName(ranking.kind),
+                                              counted(ranking.votes, "vote"), counted(ranking.voters, "voter"))});
     for (const VoteScore& score : ranking.scores) {
-      text += fmt::format("| {} | {} | {:.1f} % | {:.1f} % | {:.1f} to {:.1f} |\n", markdownText(score.method),
-                          score.votes, 100 * score.chosen, 100 * score.strength, 100 * score.low, 100 * score.high);
+      table.add({foreign(score.method), score.votes, 100 * score.chosen, 100 * score.strength,
+                 fmt::format("{:.1f} to {:.1f}", 100 * score.low, 100 * score.high)});
     }
-    text += "\n| method | against | better | worse | alike | p |\n| --- | --- | ---: | ---: | ---: | ---: |\n";
-    for (const MethodPair& pair : ranking.pairs) {
-      text += fmt::format("| {} | {} | {} | {} | {} | {:.3g} |\n", markdownText(pair.first), markdownText(pair.second),
-                          pair.firstWins, pair.secondWins, pair.ties, pair.p);
-    }
+    tables.push_back(pairTable(ranking.pairs, "alike"));
   }
-  return text;
+  return tables;
 }
 
 Json toJson(std::span<const VoteRanking> rankings) {

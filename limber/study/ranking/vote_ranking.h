@@ -35,8 +35,8 @@ struct VoteRanking {
 // kLimit above 1000 methods.
 std::vector<VoteRanking> rankByVotes(std::span<const Vote> votes);
 
-// In Markdown: for each kind the ranking, and what was chosen of each two.
-std::string voteTables(std::span<const VoteRanking> rankings);
+// For each kind the ranking, and what was chosen of each two.
+std::vector<Table> voteTables(std::span<const VoteRanking> rankings);
 Json toJson(std::span<const VoteRanking> rankings);
 
 }  // namespace limber

@@ -96,14 +96,14 @@ TEST(VoteRanking, ATieIsHalfAVoteOfEach) {
 
 TEST(VoteRanking, NeitherOrderNorSidesMatter) {
   std::vector<Vote> votes = drawnVotes(std::vector<double>{1, 3, 2}, 10, 2);
-  const std::string before = voteTables(rankByVotes(votes));
+  const std::string before = toMarkdown(voteTables(rankByVotes(votes)));
   std::reverse(votes.begin(), votes.end());
   for (std::size_t i = 0; i < votes.size(); i += 2) {
     std::swap(votes[i].first, votes[i].second);
     if (votes[i].choice != Choice::kAlike)
       votes[i].choice = votes[i].choice == Choice::kFirst ? Choice::kSecond : Choice::kFirst;
   }
-  EXPECT_EQ(voteTables(rankByVotes(votes)), before);
+  EXPECT_EQ(toMarkdown(voteTables(rankByVotes(votes))), before);
 }
 
 TEST(VoteRanking, AMethodThatWonAllAndOneThatWasNeverComparedWithItHavePlaces) {
@@ -131,8 +131,9 @@ TEST(VoteRanking, KindsAreApartAndNoVotesAreNoRanking) {
 
 TEST(VoteRanking, TablesCannotBeBrokenByNames) {
   const std::vector<VoteRanking> rankings = rankByVotes(std::vector{vote("a|b\n# c", "<script>", Choice::kFirst)});
-  EXPECT_THAT(voteTables(rankings), AllOf(HasSubstr("| a\\|b \\# c | 1 | 100.0 % |"), HasSubstr("\\<script\\>"),
-                                          HasSubstr("rig: 1 vote of 1 voter"), Not(HasSubstr("\n# c"))));
+  EXPECT_THAT(toMarkdown(voteTables(rankings)),
+              AllOf(HasSubstr("| a\\|b \\# c | 1 | 100.0 % |"), HasSubstr("\\<script\\>"),
+                    HasSubstr("rig: 1 vote of 1 voter"), Not(HasSubstr("\n# c"))));
   const Json json = toJson(rankings);
   EXPECT_EQ(json["rankings"][0]["methods"][0]["method"], "a|b\n# c");
   EXPECT_EQ(json["rankings"][0]["pairs"][0]["first_chosen"], 1);

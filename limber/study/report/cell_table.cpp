@@ -1,84 +1,58 @@
 #include "limber/study/report/cell_table.h"
 
-#include <functional>
-#include <string_view>
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "limber/document/gltf/json_text.h"
+#include "limber/report/table.h"
 
 namespace limber {
 
 namespace {
 
-using Field = std::pair<const char*, std::string>;
-
-std::vector<Field> fieldsOf(const StudyCell& cell, const CellResult& result) {
-  return {{"kind", std::string(cellKindName(cell.kind))},
-          {"group", cell.group},
-          {"model", cell.model},
-          {"motion", cell.motion},
-          {"rigger", cell.rigger},
-          {"skinning", cell.skinning},
-          {"deformer", cell.deformer},
-          {"options", cell.options},
-          {"retargeting", cell.retargeting},
-          {"solver", cell.solver},
-          {"outcome", std::string(jobOutcomeName(result.outcome))},
-          {"problem", result.problem}};
-}
-
-// Calls `row` for each cell and measure, with null where a cell has none.
-void forEachRow(const StudyResult& study,
-                const std::function<void(const std::vector<Field>&, const MeasuredValue*)>& row) {
+// A line for each cell and measure; one without a measure where a cell has none.
+Table cellTable(const StudyResult& study, bool hasUnits) {
+  Table table{{words("kind"), words("group"), words("model"), words("motion"), words("rigger"), words("skinning"),
+               words("deformer"), words("options"), words("retargeting"), words("solver"), words("outcome"),
+               words("problem"), words("measure"), number("value")}};
+  if (hasUnits) table.columns.push_back(words("unit"));
   for (std::size_t i = 0; i < study.cells.size(); ++i) {
-    const std::vector<Field> fields = fieldsOf(study.cells[i], study.results[i]);
-    if (study.results[i].measures.empty()) row(fields, nullptr);
-    for (const MeasuredValue& value : study.results[i].measures) row(fields, &value);
+    const StudyCell& cell = study.cells[i];
+    const CellResult& result = study.results[i];
+    const auto add = [&](const MeasuredValue* one) {
+      std::vector<Cell> cells = {cellKindName(cell.kind),
+                                 cell.group,
+                                 cell.model,
+                                 cell.motion,
+                                 cell.rigger,
+                                 cell.skinning,
+                                 cell.deformer,
+                                 cell.options,
+                                 cell.retargeting,
+                                 cell.solver,
+                                 jobOutcomeName(result.outcome),
+                                 result.problem};
+      cells.push_back(one ? Cell(one->measure->name) : Cell());
+      cells.push_back(one ? Cell(one->value) : Cell());
+      if (hasUnits) cells.push_back(one ? Cell(one->measure->unit) : Cell());
+      table.add(std::move(cells));
+    };
+    if (result.measures.empty()) add(nullptr);
+    for (const MeasuredValue& one : result.measures) add(&one);
   }
-}
-
-// A spreadsheet takes what begins like a formula for one, unless it is prefixed with an apostrophe.
-std::string quoted(const std::string& field) {
-  const bool isFormula = !field.empty() && std::string_view("=+-@\t\r").find(field.front()) != std::string_view::npos;
-  const std::string text = isFormula ? "'" + field : field;
-  if (text.find_first_of("\",\r\n") == std::string::npos) return text;
-  std::string quotedText = "\"";
-  for (const char c : text) quotedText += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quotedText + "\"";
+  return table;
 }
 
 }  // namespace
 
 std::string cellsCsv(const StudyResult& study) {
-  std::string names;
-  for (const Field& field : fieldsOf({}, {})) names += std::string(field.first) + ",";
-  std::string table = names + "measure,value,unit\r\n";
-  forEachRow(study, [&](const std::vector<Field>& fields, const MeasuredValue* value) {
-    for (const Field& field : fields) table += quoted(field.second) + ",";
-    if (value) {
-      table +=
-          fmt::format("{},{},{}\r\n", value->measure->name, value->value, quoted(std::string(value->measure->unit)));
-    } else {
-      table += ",,\r\n";
-    }
-  });
-  return table;
+  return toCsv(cellTable(study, true));
 }
 
 std::string cellsJson(const StudyResult& study) {
-  Json rows = Json::array();
-  forEachRow(study, [&](const std::vector<Field>& fields, const MeasuredValue* value) {
-    Json row = Json::object();
-    for (const Field& field : fields) row[field.first] = field.second;
-    row["measure"] = value ? Json(value->measure->name) : Json(nullptr);
-    row["value"] = value ? Json(value->value) : Json(nullptr);
-    rows.push_back(std::move(row));
-  });
-  return dumpReport({{"title", study.title}, {"cells", std::move(rows)}}, 1) + "\n";
+  return dumpReport({{"title", study.title}, {"cells", toJson(cellTable(study, false))}}, 1) + "\n";
 }
 
 }  // namespace limber

@@ -12,10 +12,11 @@
 #include "limber/core/file/file.h"
 #include "limber/core/text/names.h"
 #include "limber/document/uri.h"
+#include "limber/report/escaped_text.h"
+#include "limber/report/page_assets.h"
+#include "limber/report/table.h"
 #include "limber/study/ranking/study_rankings.h"
 #include "limber/study/report/ballot_page.h"
-#include "limber/study/report/html_text.h"
-#include "limber/study/report/report_assets.h"
 #include "limber/study/report/time_plot.h"
 
 namespace limber {
@@ -24,112 +25,84 @@ namespace {
 
 constexpr std::size_t kMaxEmbedded = 13000000;  // bytes of pictures as text, of a page below 15 MB
 
-std::string numberCell(double value) {
-  return fmt::format("<td data-value=\"{}\"{}>{}</td>",
-                     std::isfinite(value) ? fmt::format("{}", value)
-                     : value < 0          ? "-Infinity"
-                                          : "Infinity",
-                     std::isfinite(value) ? "" : " class=\"bad\"", numberText(value));
+// Infinite where the method failed that often.
+Cell numberCell(double value) {
+  Cell cell(value);
+  cell.text = numberText(value);
+  cell.isBad = !std::isfinite(value);
+  return cell;
 }
 
-constexpr const char* kNoNumber = "<td data-value=\"\">-</td>";
-
-std::string countCell(std::size_t count, bool isBad = false) {
-  return fmt::format("<td data-value=\"{0}\"{1}>{0}</td>", count, isBad && count > 0 ? " class=\"bad\"" : "");
+Cell failureCell(std::size_t count) {
+  Cell cell(count);
+  cell.isBad = count > 0;
+  return cell;
 }
 
-struct Column {
-  std::string name;
-  bool isText = false;
-};
-
-std::string tableHead(std::string_view caption, const std::vector<Column>& columns) {
-  std::string html = fmt::format(
-      "<div class=\"scroll\" role=\"group\" tabindex=\"0\" "
-      "aria-label=\"{0}\"><table><caption>{0}</caption><thead><tr>",
-      htmlText(caption));
-  for (const Column& column : columns) {
-    html += fmt::format("<th scope=\"col\" aria-sort=\"none\"{}><button type=\"button\">{}</button></th>",
-                        column.isText ? " class=\"text\"" : "", htmlText(column.name));
-  }
-  return html + "</tr></thead><tbody>\n";
+Cell cellLink(const StudyResult& study, std::size_t cell) {
+  Cell link(study.cells[cell].subject());
+  link.target = fmt::format("#cell-{}", cell);
+  return link;
 }
 
-constexpr std::string_view kTableEnd = "</tbody></table></div>\n";
-
-std::string rowStart(std::string_view words) {
-  return fmt::format("<tr data-words=\"{}\">", htmlText(lowerCase(words)));
-}
-
-std::string textCell(std::string_view text) {
-  return fmt::format("<td class=\"text\">{}</td>", htmlText(text));
-}
-
-std::string cellLink(const StudyResult& study, std::size_t cell) {
-  return fmt::format("<td class=\"text\"><a href=\"#cell-{}\">{}</a></td>", cell,
-                     htmlText(study.cells[cell].subject()));
+// By which a reader finds a cell.
+std::string filterWords(const StudyCell& cell) {
+  return cell.subject() + " " + cell.group + " " + cell.method();
 }
 
 // In percent.
-std::string strengthCell(const VoteRanking& byEye, const std::string& method) {
+Cell strengthCell(const VoteRanking& byEye, const std::string& method) {
   const auto score = std::find_if(byEye.scores.begin(), byEye.scores.end(),
                                   [&](const VoteScore& one) { return one.method == method; });
-  return score == byEye.scores.end() ? kNoNumber : numberCell(100 * score->strength);
+  return score == byEye.scores.end() ? Cell() : numberCell(100 * score->strength);
 }
 
 // The medians of all measures that rank, or of those that do not, side by side: a line for each method, over all and in
 // each folder. byEye: the ranking by votes beside them, or null.
 std::string overview(const KindRankings& report, bool ranks, std::string_view title, const VoteRanking* byEye) {
-  std::vector<Column> columns = {{"method", true}, {"folder", true}};
+  Table table{{words("method"), words("folder")}, fmt::format("{}: {}", kindTitle(report.kind), title)};
   for (const Ranking& ranking : report.groups.front().rankings) {
-    if (ranking.measure->ranks != ranks) continue;
-    columns.push_back({measureTitle(*ranking.measure)});
+    if (ranking.measure->ranks == ranks) table.columns.push_back(significant(measureTitle(*ranking.measure), 4));
   }
-  if (columns.size() == 2 && !byEye) return {};
-  if (byEye) columns.push_back({"by eye (%)"});
-  std::string html = tableHead(fmt::format("{}: {}", kindTitle(report.kind), title), columns);
+  if (table.columns.size() == 2 && !byEye) return {};
+  if (byEye) table.columns.push_back(significant("by eye (%)", 4));
   for (const GroupRankings& group : report.groups) {
     for (const std::string& method : report.methods) {
       const auto isThere = [&](const Ranking& all) { return all.measure->ranks == ranks && all.scoreOf(method); };
       const std::vector<Ranking>& all = report.groups.front().rankings;
       if (!byEye && std::none_of(all.begin(), all.end(), isThere)) continue;
-      html +=
-          rowStart(method + " " + group.name) + textCell(method) + textCell(group.name.empty() ? "all" : group.name);
+      std::vector<Cell> cells = {method, group.name.empty() ? "all" : group.name};
       for (const Ranking& ranking : group.rankings) {
         if (ranking.measure->ranks != ranks) continue;
         const MethodScore* score = ranking.scoreOf(method);
-        html += score ? numberCell(score->value.median) : kNoNumber;
+        cells.push_back(score ? numberCell(score->value.median) : Cell());
       }
-      if (byEye) html += group.name.empty() ? strengthCell(*byEye, method) : kNoNumber;
-      html += "</tr>\n";
+      if (byEye) cells.push_back(group.name.empty() ? strengthCell(*byEye, method) : Cell());
+      table.add(std::move(cells), method + " " + group.name);
     }
   }
-  return html + std::string(kTableEnd);
+  return toHtml(table);
 }
 
 std::string rankingTable(const Ranking& ranking) {
-  std::string html = tableHead(
-      fmt::format("Ranking by {}", ranking.measure->label),
-      {{"rank"}, {"method", true}, {"models"}, {"failed"}, {"median"}, {"95 % from"}, {"95 % to"}, {"time (s)"}});
+  Table table{{number("rank", 0), words("method"), number("models", 0), number("failed", 0), significant("median", 4),
+               significant("95 % from", 4), significant("95 % to", 4), significant("time (s)", 4)},
+              fmt::format("Ranking by {}", ranking.measure->label)};
   for (std::size_t i = 0; i < ranking.scores.size(); ++i) {
     const MethodScore& score = ranking.scores[i];
-    html += rowStart(score.method) + countCell(i + 1) + textCell(score.method) + countCell(score.subjects) +
-            countCell(score.failures, true) + numberCell(score.value.median) + numberCell(score.value.low) +
-            numberCell(score.value.high) + (score.seconds > 0 ? numberCell(score.seconds) : kNoNumber) + "</tr>\n";
+    table.add({i + 1, score.method, score.subjects, failureCell(score.failures), numberCell(score.value.median),
+               numberCell(score.value.low), numberCell(score.value.high),
+               score.seconds > 0 ? numberCell(score.seconds) : Cell()},
+              score.method);
   }
-  return html + std::string(kTableEnd);
+  return toHtml(table);
 }
 
-std::string pairTable(std::span<const MethodPair> pairs, std::string_view caption) {
+std::string pairsHtml(std::span<const MethodPair> pairs, std::string caption) {
   if (pairs.empty()) return {};
-  std::string html =
-      tableHead(caption, {{"method", true}, {"against", true}, {"better"}, {"worse"}, {"the same"}, {"p"}});
-  for (const MethodPair& pair : pairs) {
-    html += rowStart(pair.first + " " + pair.second) + textCell(pair.first) + textCell(pair.second) +
-            countCell(pair.firstWins) + countCell(pair.secondWins) + countCell(pair.ties) + numberCell(pair.p) +
-            "</tr>\n";
-  }
-  return html + std::string(kTableEnd);
+  Table table = pairTable(pairs, "the same");
+  table.caption = std::move(caption);
+  return toHtml(table);
 }
 
 std::string votesHtml(const VoteRanking& byEye) {
@@ -139,28 +112,27 @@ std::string votesHtml(const VoteRanking& byEye) {
       "is "
       "of the votes.</p>\n",
       counted(byEye.votes, "vote"), counted(byEye.voters, "voter"));
-  html +=
-      tableHead("Ranking by eye",
-                {{"rank"}, {"method", true}, {"votes"}, {"chosen (%)"}, {"strength (%)"}, {"95 % from"}, {"95 % to"}});
+  Table table{{number("rank", 0), words("method"), number("votes", 0), significant("chosen (%)", 4),
+               significant("strength (%)", 4), significant("95 % from", 4), significant("95 % to", 4)},
+              "Ranking by eye"};
   for (std::size_t i = 0; i < byEye.scores.size(); ++i) {
     const VoteScore& score = byEye.scores[i];
-    html += rowStart(score.method) + countCell(i + 1) + textCell(score.method) + countCell(score.votes);
-    for (const double part : {score.chosen, score.strength, score.low, score.high}) html += numberCell(100 * part);
-    html += "</tr>\n";
+    table.add(
+        {i + 1, score.method, score.votes, 100 * score.chosen, 100 * score.strength, 100 * score.low, 100 * score.high},
+        score.method);
   }
-  return html + std::string(kTableEnd) + pairTable(byEye.pairs, "Are they different by eye? Sign test, p after Holm") +
+  return html + toHtml(table) + pairsHtml(byEye.pairs, "Are they different by eye? Sign test, p after Holm") +
          "</details>\n";
 }
 
 std::string worstTable(const StudyResult& study, const Ranking& ranking) {
-  std::string html =
-      tableHead("Worst cells", {{"model", true}, {"method", true}, {std::string(ranking.measure->label)}});
+  Table table{{words("model"), words("method"), significant(std::string(ranking.measure->label), 4)}, "Worst cells"};
   for (const std::size_t cell : ranking.worstCells) {
-    const StudyCell& one = study.cells[cell];
-    html += rowStart(one.subject() + " " + one.group + " " + one.method()) + cellLink(study, cell) +
-            textCell(one.method()) + numberCell(study.results[cell].valueOf(*ranking.measure).value_or(0)) + "</tr>\n";
+    table.add({cellLink(study, cell), study.cells[cell].method(),
+               numberCell(study.results[cell].valueOf(*ranking.measure).value_or(0))},
+              filterWords(study.cells[cell]));
   }
-  return html + std::string(kTableEnd);
+  return toHtml(table);
 }
 
 std::string kindSection(const StudyResult& study, const KindRankings& report, const VoteRanking* byEye) {
@@ -174,7 +146,7 @@ std::string kindSection(const StudyResult& study, const KindRankings& report, co
     html += fmt::format("<details class=\"measure\"{}><summary>{}</summary>\n", isFirst ? " open" : "",
                         htmlText(measureTitle(*ranking.measure)));
     html += rankingTable(ranking) + timePlot(ranking) +
-            pairTable(ranking.pairs, "Are they different? Wilcoxon's signed rank test, p after Holm") +
+            pairsHtml(ranking.pairs, "Are they different? Wilcoxon's signed rank test, p after Holm") +
             worstTable(study, ranking) + "</details>\n";
     isFirst = false;
   }
@@ -182,19 +154,14 @@ std::string kindSection(const StudyResult& study, const KindRankings& report, co
 }
 
 std::string failureSection(const StudyResult& study) {
-  std::string rows;
+  Table table{{words("model"), words("method"), words("outcome"), {.name = "why", .wraps = true}}, "Cells that failed"};
   for (std::size_t i = 0; i < study.cells.size(); ++i) {
     const CellResult& result = study.results[i];
     if (result.outcome == JobOutcome::kDone) continue;
-    const StudyCell& cell = study.cells[i];
-    rows += rowStart(cell.subject() + " " + cell.group + " " + cell.method()) + cellLink(study, i) +
-            textCell(cell.method()) + textCell(jobOutcomeName(result.outcome)) +
-            fmt::format("<td class=\"text wrap\">{}</td></tr>\n", htmlText(result.problem));
+    table.add({cellLink(study, i), study.cells[i].method(), jobOutcomeName(result.outcome), result.problem},
+              filterWords(study.cells[i]));
   }
-  if (rows.empty()) return {};
-  return "<section><h2>What did not end well</h2>\n" +
-         tableHead("Cells that failed", {{"model", true}, {"method", true}, {"outcome", true}, {"why", true}}) + rows +
-         std::string(kTableEnd) + "</section>\n";
+  return table.rows.empty() ? "" : "<section><h2>What did not end well</h2>\n" + toHtml(table) + "</section>\n";
 }
 
 // Where a picture is, as an attribute has it: its bytes, or its name beside the page.
@@ -231,8 +198,8 @@ std::string cellFigure(const StudyResult& study, std::size_t index, const Pictur
   std::string html = fmt::format(
       "<figure id=\"cell-{0}\" data-words=\"{1}\" data-kind=\"{2}\" data-subject=\"{3}\" data-method=\"{4}\">"
       "<figcaption>{4}</figcaption>\n",
-      index, htmlText(lowerCase(cell.subject() + " " + cell.group + " " + cell.method())), cellKindName(cell.kind),
-      htmlText(cell.subject()), htmlText(cell.method()));
+      index, htmlText(lowerCase(filterWords(cell))), cellKindName(cell.kind), htmlText(cell.subject()),
+      htmlText(cell.method()));
   for (const CellPicture& picture : result.pictures) {
     html += pictureHtml(picture, cell.subject() + " by " + cell.method(), source);
   }
@@ -290,14 +257,14 @@ std::string reportPage(const StudyResult& study, const std::filesystem::path& fo
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data: file: 'self'; "
       "style-src 'unsafe-inline'; script-src 'unsafe-inline'\">"
       "<title>{}</title><style>{}{}</style></head><body>\n{}<main>\n",
-      htmlText(study.title), kReportStyle, kBallotStyle, header(study));
+      htmlText(study.title), kPageStyle, kBallotStyle, header(study));
   for (const KindRankings& report : studyRankings(study)) {
     const auto votes =
         std::find_if(byEye.begin(), byEye.end(), [&](const VoteRanking& one) { return one.kind == report.kind; });
     html += kindSection(study, report, votes == byEye.end() ? nullptr : &*votes);
   }
   html += failureSection(study) + ballotSection(study) + pictureSection(study, pictureSource(study, folder));
-  return html + fmt::format("</main><script>{}{}</script></body></html>\n", kReportScript, kBallotScript);
+  return html + fmt::format("</main><script>{}{}</script></body></html>\n", kPageScript, kBallotScript);
 }
 
 }  // namespace limber

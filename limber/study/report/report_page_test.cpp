@@ -5,7 +5,6 @@
 
 #include <fstream>
 
-#include "limber/study/report/html_text.h"
 #include "temporary_folder.h"
 
 namespace limber {
@@ -122,11 +121,6 @@ TEST_F(ReportPage, StaysBelowFifteenMegabytes) {
 
 TEST_F(ReportPage, AStudyWithoutCellsIsAPageToo) {
   EXPECT_THAT(pageOf({}), HasSubstr("0 cells"));
-}
-
-TEST(HtmlText, EscapesAllThatHasAMeaning) {
-  EXPECT_EQ(htmlText("a<b>&\"'\x01z"), "a&lt;b&gt;&amp;&quot;&#39; z");
-  EXPECT_EQ(htmlText("größe"), "größe");
 }
 
 }  // namespace

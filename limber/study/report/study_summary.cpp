@@ -8,8 +8,9 @@
 #include <fmt/format.h>
 
 #include "limber/core/counted.h"
+#include "limber/report/escaped_text.h"
+#include "limber/report/table.h"
 #include "limber/study/ranking/study_rankings.h"
-#include "limber/study/report/markdown_text.h"
 
 namespace limber {
 
@@ -37,8 +38,8 @@ Columns columnsOf(const GroupRankings& group, MeasureSource source, bool ranks) 
 }
 
 // "6.45 (4.42 to 9.21), 2 of 40 failed"
-std::string scoreText(const MethodScore* score) {
-  if (!score) return "-";
+Cell scoreCell(const MethodScore* score) {
+  if (!score) return {};
   const MedianInterval& value = score->value;
   std::string text =
       fmt::format("{} ({} to {})", numberText(value.median), numberText(value.low), numberText(value.high));
@@ -46,34 +47,28 @@ std::string scoreText(const MethodScore* score) {
   return text;
 }
 
-std::string timeText(const GroupRankings& group, const std::string& method) {
+Cell timeCell(const GroupRankings& group, const std::string& method) {
   for (const Ranking& ranking : group.rankings) {
     const MethodScore* score = ranking.scoreOf(method);
     if (score && score->seconds > 0) return numberText(score->seconds);
   }
-  return "-";
+  return {};
 }
 
 std::string tableText(const KindRankings& kind, const GroupRankings& group, const Columns& columns,
                       const SummaryOptions& options) {
-  std::string head = "| method |", line = "| --- |", rows;
-  for (const Ranking* ranking : columns) {
-    head += fmt::format(" {} |", measureTitle(*ranking->measure));
-    line += " --- |";
-  }
-  if (options.hasTimes) {
-    head += " time (s) |";
-    line += " --- |";
-  }
+  Table table{{words("method")}};
+  for (const Ranking* ranking : columns) table.columns.push_back(words(measureTitle(*ranking->measure)));
+  if (options.hasTimes) table.columns.push_back(words("time (s)"));
   for (const std::string& method : kind.methods) {
     const auto has = [&](const Ranking* ranking) { return ranking->scoreOf(method) != nullptr; };
     if (std::none_of(columns.begin(), columns.end(), has)) continue;
-    rows += fmt::format("| {} |", markdownText(method));
-    for (const Ranking* ranking : columns) rows += fmt::format(" {} |", scoreText(ranking->scoreOf(method)));
-    if (options.hasTimes) rows += fmt::format(" {} |", timeText(group, method));
-    rows += "\n";
+    std::vector<Cell> cells = {foreign(method)};
+    for (const Ranking* ranking : columns) cells.push_back(scoreCell(ranking->scoreOf(method)));
+    if (options.hasTimes) cells.push_back(timeCell(group, method));
+    table.add(std::move(cells));
   }
-  return head + "\n" + line + "\n" + rows + "\n";
+  return toMarkdown(table) + "\n";
 }
 
 std::string pText(double p) {

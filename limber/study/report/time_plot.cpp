@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "limber/study/report/html_text.h"
+#include "limber/report/escaped_text.h"
 
 namespace limber {
 

@@ -1,8 +1,8 @@
-#include "limber/study/report/report_assets.h"
+#include "limber/report/page_assets.h"
 
 namespace limber {
 
-const std::string_view kReportStyle = R"css(
+const std::string_view kPageStyle = R"css(
 :root {
   color-scheme: light dark; --line: #c8ccd2; --soft: #f2f4f7; --ink: #1c2430; --page: #fff; --bad: #a3161f;
   --link: #0b57a4;
@@ -67,7 +67,7 @@ svg .axis { stroke: var(--line); fill: none; }
 
 // Tables sort by a cell's data-value, else by its text, what has none last; the filter hides whatever has data-words
 // without all of the words.
-const std::string_view kReportScript = R"js(
+const std::string_view kPageScript = R"js(
 'use strict';
 const valueOf = (row, column) => {
   const cell = row.cells[column];
