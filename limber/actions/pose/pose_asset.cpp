@@ -85,12 +85,9 @@ std::vector<ReachReport> editPose(const Skeleton& skeleton, Pose& pose, const Po
 }
 
 AssetPoser::AssetPoser(const Character& character, const AssetSkeleton& skeleton, const Deformer& deformer)
-    : character_(character),
-      whole_(character.inOneBindPose()),
-      skeleton_(skeleton.skeleton),
-      deformer_(deformer),
-      shapes_(readShapeWeights(whole_.document())) {
+    : character_(character), whole_(character.inOneBindPose()), skeleton_(skeleton.skeleton), deformer_(deformer) {
   bound_ = {whole_.surface(), readNormals(whole_.document(), whole_.surface())};
+  shapes_ = readShapeWeights(whole_.document());
   moveByShapes(whole_.document(), shapes_, bound_.geometry, &bound_.normals);
   weights_ = readWeights(whole_.document(), whole_.surface(), skeleton);
   normalizeWeights(weights_);
