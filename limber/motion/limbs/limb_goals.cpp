@@ -107,8 +107,11 @@ void LimbGoals::readFoot(Leg& leg, FootState& state, const BodyFrame& source, co
     foot.toes += target.positions[*spec.toes] - target.positions[spec.end];
     foot.toesGround = spec.toesGround - loweredBy(spec, spec.sourceToesGround, source.positions[*spec.sourceToes]);
   }
-  followFall(before.ankle.y() - foot.ankle.y(), seconds, state.ankleFall);
-  followFall(before.toes.y() - foot.toes.y(), seconds, state.toesFall);
+  const auto follow = [&](double down, SprungNumber& fall) {
+    fall.drawTo(seconds > 0 ? std::max(down / seconds, 0.0) : 0.0, kLanding.fallRate, seconds);
+  };
+  follow(before.ankle.y() - foot.ankle.y(), state.ankleFall);
+  follow(before.toes.y() - foot.toes.y(), state.toesFall);
   leg.state.ankleFloor = foot.ankleGround;
   leg.state.toesFloor = foot.toesGround;
 }
@@ -160,11 +163,6 @@ void LimbGoals::driveFoot(Leg& leg, FootState& state, const BodyFrame& source, c
   state.sourceEnd = sourceEnd;
 }
 
-// `down` is the downward displacement in this frame.
-void LimbGoals::followFall(double down, double seconds, Fall& fall) {
-  springTo(seconds > 0 ? std::max(down / seconds, 0.0) : 0.0, kLanding.fallRate, seconds, fall.speed, fall.change);
-}
-
 // Of what rests on its toes: sitting animals lay the whole foot down. As far as a joint in the source is below where it
 // is when standing, it may be in the target.
 double LimbGoals::loweredBy(const LegSpec& leg, double sourceGround, const Vec3& sourcePosition) const {
@@ -199,11 +197,11 @@ void LimbGoals::setFeet(const BodyFrame& source, const BodyFrame& target, double
   rise_ = nextRise(target, seconds);
 }
 
-LimbGoals::Rise LimbGoals::nextRise(const BodyFrame& target, double seconds) const {
-  Rise rise = rise_;
+SprungNumber LimbGoals::nextRise(const BodyFrame& target, double seconds) const {
+  SprungNumber rise = rise_;
   const double wanted = pelvis_.riseFor(legs_, target, pelvis_.turnFor(legs_, target));
   const bool atOnce = legs_.empty() || legs_.front().spec.support.risesAtOnce;
-  springTo(wanted, kFollowing.riseRate, atOnce ? 0 : seconds, rise.value, rise.speed);
+  rise.drawTo(wanted, kFollowing.riseRate, atOnce ? 0 : seconds);
   return rise;
 }
 
@@ -238,8 +236,8 @@ void LimbGoals::setFoot(Leg& leg, const FootState& state, FootLock& lock, double
 // Both ends of the foot, without a kink, and the earlier the faster they come down; last the one that holds it.
 void LimbGoals::keepAboveGround(Leg& leg, const FootLock::Frame& foot, const FootState& state) const {
   const double toesOver = foot.toes.y() - foot.ankle.y();
-  const auto raise = [&](double under, const Fall& fall, double firm) {
-    const double height = setup_.targetHipHeight, ahead = kLanding.fallSeconds * std::max(fall.speed, 0.0) / height;
+  const auto raise = [&](double under, const SprungNumber& fall, double firm) {
+    const double height = setup_.targetHipHeight, ahead = kLanding.fallSeconds * std::max(fall.value, 0.0) / height;
     const double soft = kLanding.softGround + kLanding.maxSoftness * ahead / (kLanding.maxSoftness + ahead);
     leg.goal.position.y() += softPositive(under, height * soft * (1 - firm * leg.state.contact.strength));
   };

@@ -56,31 +56,22 @@ class LimbGoals {
   bool feetAreDriven() const;
 
  private:
-  // How fast a point of the free foot comes down, metres a second, without the recording's trembling.
-  struct Fall {
-    double speed = 0, change = 0;
-  };
   // Of a leg's foot, what lasts from frame to frame.
   struct FootState {
     FootLock lock;
     double changedSpeed = 0;
-    FootLock::Frame foot;  // as its joint angles have it
-    Fall ankleFall, toesFall;
-    Vec3 carried = Vec3::Zero();    // by its hip
-    Vec3 sourceEnd = Vec3::Zero();  // of a foot-driven leg, in the frame before
+    FootLock::Frame foot;              // as its joint angles have it
+    SprungNumber ankleFall, toesFall;  // how fast the free foot comes down, metres a second, without trembling
+    Vec3 carried = Vec3::Zero();       // by its hip
+    Vec3 sourceEnd = Vec3::Zero();     // of a foot-driven leg, in the frame before
   };
 
-  struct Rise {
-    double value = 0, speed = 0;
-  };
-
-  Rise nextRise(const BodyFrame& target, double seconds) const;
+  SprungNumber nextRise(const BodyFrame& target, double seconds) const;
   void readFoot(Leg& leg, FootState& state, const BodyFrame& source, const BodyFrame& target, double seconds) const;
   Quat turnOfBody(const FootDrive& drive, const BodyFrame& source) const;
   Vec3 turnedAsBody(const Vec3& displacement, const FootDrive& drive, const BodyFrame& source) const;
   Vec3 drivenPosition(const LegSpec& leg, const BodyFrame& source, const BodyFrame& target) const;
   void driveFoot(Leg& leg, FootState& state, const BodyFrame& source, const BodyFrame& target, double seconds) const;
-  static void followFall(double down, double seconds, Fall& fall);
   void carryFeet(const BodyFrame& target, double seconds);
   void setFoot(Leg& leg, const FootState& state, FootLock& lock, double seconds) const;
   void keepAboveGround(Leg& leg, const FootLock::Frame& foot, const FootState& state) const;
@@ -95,7 +86,7 @@ class LimbGoals {
   std::vector<Leg> legs_;
   ContactReader contacts_;         // of the legs
   std::vector<FootState> states_;  // likewise
-  Rise rise_;                      // of the pelvis
+  SprungNumber rise_;              // of the pelvis
   bool active_ = true;
 };
 

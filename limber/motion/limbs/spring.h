@@ -23,6 +23,13 @@ void springTo(const Value& wanted, double rate, double seconds, Value& value, Va
   speed = fade * (speed - rate * seconds * pull);
 }
 
+// A number that is drawn so.
+struct SprungNumber {
+  double value = 0, speed = 0;
+
+  void drawTo(double wanted, double rate, double seconds) { springTo(wanted, rate, seconds, value, speed); }
+};
+
 // A vector that is drawn so, at rest at the origin.
 struct Sprung {
   Vec3 value = Vec3::Zero(), speed = Vec3::Zero();

@@ -17,11 +17,14 @@ namespace limber {
 
 namespace {
 
-constexpr int kMaxRepeats = 64;      // repeats; 8 to 1000; of a motion that loops: bounds memory; set by hand
-constexpr double kSamePhase = 1e-6;  // footfalls; 1e-9 to 1e-3; rounding only
-// Ratio; 2 to 4; strides a second grow fourfold from a stroll (0.55) to a sprint (2.2): beyond that no two are gaits of
-// one body.
-constexpr double kMaxRateRatio = 4;
+struct Blending {
+  int maxRepeats = 64;      // repeats; 8 to 1000; of a motion that loops: bounds memory; set by hand
+  double samePhase = 1e-6;  // footfalls; 1e-9 to 1e-3; rounding only
+  // Ratio; 2 to 4; strides a second grow fourfold from a stroll (0.55) to a sprint (2.2): beyond that no two are gaits
+  // of one body.
+  double maxRateRatio = 4;
+};
+constexpr Blending kBlending;
 
 // What the blend plays: both motions, repeated where they loop, on one scale.
 struct Together {
@@ -47,7 +50,7 @@ long cycleOf(const GaitPhase& phase, double duration) {
 }
 
 int repeatsFor(double steps, long cycle) {
-  return static_cast<int>(std::min<double>(kMaxRepeats, std::ceil(steps / static_cast<double>(cycle)) + 2));
+  return static_cast<int>(std::min<double>(kBlending.maxRepeats, std::ceil(steps / static_cast<double>(cycle)) + 2));
 }
 
 Together overCommonSpan(MixMotion a, MixMotion b, StridePhases phases) {
@@ -61,7 +64,7 @@ std::optional<Together> overLoops(const MixMotion& a, const MixMotion& b, double
   const std::optional<StridePhases> three = stepsOf(a.repeated(3), b.repeated(3));
   if (!three) return std::nullopt;
   const long ofA = cycleOf(three->a, a.duration()), ofB = cycleOf(three->b, b.duration()), both = std::lcm(ofA, ofB);
-  if (both / std::min(ofA, ofB) > kMaxRepeats / 2) return std::nullopt;
+  if (both / std::min(ofA, ofB) > kBlending.maxRepeats / 2) return std::nullopt;
   MixMotion manyA = a.repeated(static_cast<int>(both / ofA) + 3), manyB = b.repeated(static_cast<int>(both / ofB) + 3);
   std::optional<StridePhases> phases = stepsOf(manyA, manyB);
   if (!phases) return std::nullopt;
@@ -106,7 +109,7 @@ double rateRatio(const Together& together) {
 
 void warnOfRates(const Together& together, double weight, Warnings& warnings) {
   const double ratio = rateRatio(together);
-  if (!(ratio > kMaxRateRatio) || weight == 0 || weight == 1) return;
+  if (!(ratio > kBlending.maxRateRatio) || weight == 0 || weight == 1) return;
   warnings.add("unlike-rates",
                fmt::format("steps of blended motions, or what they last where one has none, differ by a factor of "
                            "{:.3g}: the slower motion is played too fast",
@@ -131,7 +134,7 @@ void holdPoses(const MixBody& body, const Clip& a, const Clip& b, MixMotion& fir
 std::vector<MixMoment> playedMoments(const Together& together, double weight, double frameSeconds, double speed) {
   JointClock clock(together.phases, together.phases.a.when(together.from));
   std::vector<MixMoment> moments;
-  while (clock.phase() <= together.to + kSamePhase) {
+  while (clock.phase() <= together.to + kBlending.samePhase) {
     moments.push_back({clock.a(), clock.b(), weight});
     if (moments.size() > kMaxClipFrames) {
       throw Error(ErrorCode::kLimit, "the blend has too many frames", together.a.name(), "choose a lower frame rate");
@@ -147,8 +150,8 @@ double speedToClose(const Together& together, double weight, double frameSeconds
   const double last = together.phases.a.at(*moments.back().a);
   JointClock clock(together.phases, *moments.back().a);
   clock.advance(frameSeconds, weight, weight);
-  const double frames =
-      static_cast<double>(moments.size() - 1) + (together.to - last) / std::max(clock.phase() - last, kSamePhase);
+  const double frames = static_cast<double>(moments.size() - 1) +
+                        (together.to - last) / std::max(clock.phase() - last, kBlending.samePhase);
   return frames / std::max(1.0, std::round(frames));
 }
 

@@ -12,13 +12,15 @@ namespace limber {
 
 namespace {
 
-// Fraction of the longer of two spans; 0.2 to 0.55; by which they overlap where they are one contact: a walk's and a
-// run's do by 0.56 (measured).
-constexpr double kTogether = 0.4;
-constexpr double kCounts = 0.2;  // weight; 0 to 0.5; from there on a motion says what is planted; set by hand
-constexpr double kSamePosition =
-    0.2;  // hip heights; 0.1 to 0.5; between a foot's positions, planted in both; set by hand
-constexpr double kSameDirection = 1 - 1e-13;  // cosine of half an angle; 1 - 1e-10 to below 1; rounding only
+struct FootMixing {
+  // Fraction of the longer of two spans; 0.2 to 0.55; by which they overlap where they are one contact: a walk's and a
+  // run's do by 0.56 (measured).
+  double together = 0.4;
+  double counts = 0.2;        // weight; 0 to 0.5; from there on a motion says what is planted; set by hand
+  double samePosition = 0.2;  // hip heights; 0.1 to 0.5; between a foot's positions, planted in both; set by hand
+  double sameDirection = 1 - 1e-13;  // cosine of half an angle; 1 - 1e-10 to below 1; rounding only
+};
+constexpr FootMixing kFootMixing;
 
 // One of the motions in one frame.
 struct PartFrame {
@@ -65,7 +67,7 @@ std::vector<PairedSpan> paired(const std::vector<PhaseSpan>& ofA, const std::vec
     const std::optional<std::size_t> other = best(ofA[i], ofB);
     if (!other || best(ofB[*other], ofA) != i) continue;
     const PhaseSpan &a = ofA[i], &b = ofB[*other];
-    if (overlapOf(a, b) >= kTogether * std::max(a.to - a.from, b.to - b.from)) pairs.push_back({a, b});
+    if (overlapOf(a, b) >= kFootMixing.together * std::max(a.to - a.from, b.to - b.from)) pairs.push_back({a, b});
   }
   return pairs;
 }
@@ -178,7 +180,7 @@ class Mixer {
   void pointAt(Index joint, Index next, const Vec3& position, Pose& pose) {
     const Vec3 now = frame_.positions[next] - frame_.positions[joint], wanted = position - frame_.positions[joint];
     const Quat turn = shortestRotation(now, wanted);
-    if (!(now.norm() > 0 && wanted.norm() > 0) || std::abs(turn.w()) > kSameDirection) return;
+    if (!(now.norm() > 0 && wanted.norm() > 0) || std::abs(turn.w()) > kFootMixing.sameDirection) return;
     const BodyKinematics& kinematics = body_.setup().targetKinematics;
     pose.locals[joint].rotation =
         kinematics.parentRotation(joint, frame_).conjugate() * (turn * frame_.rotations[joint]);
@@ -202,11 +204,11 @@ class Mixer {
                     [&](const PairedSpan& pair) { return isWithin(pair, phase, moment.weight); })) {
       return true;
     }
-    const bool aCounts = 1 - moment.weight >= kCounts, bCounts = moment.weight >= kCounts;
+    const bool aCounts = 1 - moment.weight >= kFootMixing.counts, bCounts = moment.weight >= kFootMixing.counts;
     if ((aCounts && !a->feet[leg].planted) || (bCounts && !b->feet[leg].planted)) return false;
     if (!aCounts || !bCounts) return true;
     const Vec3 apart = inFrame(a->feet[leg].ankle, *a) - inFrame(b->feet[leg].ankle, *b);
-    return apart.norm() < kSamePosition * body_.setup().targetHipHeight;
+    return apart.norm() < kFootMixing.samePosition * body_.setup().targetHipHeight;
   }
 
   static double countOf(const MaybePart& before, const MaybePart& now, std::size_t leg, double weight) {

@@ -18,10 +18,13 @@ namespace limber {
 
 namespace {
 
-// Seconds; 0.05 to 0.2; in which changes come and go: of foot-driven legs, of which little is left to change, and of
-// hands (0.1 before). By the judge on half of the shared motions.
-constexpr double kFootDrivenSeconds = 0.13, kHandSeconds = 0.12;
-constexpr double kFootDrivenRest = 0.1;  // fraction; 0 to 1; how firmly a foot-driven foot keeps its height; likewise
+struct ChangeTimes {
+  // Seconds; 0.05 to 0.2; in which changes come and go: of foot-driven legs, of which little is left to change, and of
+  // hands (0.1 before). By the judge on half of the shared motions.
+  double footDrivenSeconds = 0.13, handSeconds = 0.12;
+  double footDrivenRest = 0.1;  // fraction; 0 to 1; how firmly a foot-driven foot keeps its height; likewise
+};
+constexpr ChangeTimes kChangeTimes;
 
 using Goals = std::vector<CurveGoal>;
 using Goals3 = std::array<Goals, 3>;
@@ -172,7 +175,7 @@ class Spacetime {
     asked.rest = contacts_->firmness(f, i);
     if (leg.drive) {  // its height is its own
       asked.height = std::max(0.0, asked.lowest);
-      asked.rest = kFootDrivenRest;
+      asked.rest = kChangeTimes.footDrivenRest;
     }
     asked.displacement = unit * (now.ankle - to.positions[leg.upper]);
     asked.most = unit * planting::kStretched * leg.length;
@@ -194,7 +197,7 @@ class Spacetime {
     FootPlanting planting;
     planting.end = frames();
     planting.frameSeconds = target_.frameSeconds;
-    if (goals_.feetAreDriven()) planting.changeSeconds = kFootDrivenSeconds;
+    if (goals_.feetAreDriven()) planting.changeSeconds = kChangeTimes.footDrivenSeconds;
     planting.cuts = cuts_;
     planting.frameAt = [&](std::size_t f) -> const BodyFrame& { return targetAt(f); };
     planting.askedOf = [&](std::size_t f, std::size_t leg, const BodyFrame& to) { return askedOf(leg, f, to); };
@@ -226,7 +229,7 @@ class Spacetime {
       }
     }
     for (std::size_t a = 0; a < arms.size(); ++a) {
-      const Curve3 smooth(displacements[a], target_.frameSeconds, following(kHandSeconds));
+      const Curve3 smooth(displacements[a], target_.frameSeconds, following(kChangeTimes.handSeconds));
       for (std::size_t f = 0; f < frames(); ++f) {
         BodyFrame& to = targetAt(f);
         arms[a].goal.position = to.positions[arms[a].spec.end] + smooth.at(f);
@@ -244,7 +247,7 @@ class Spacetime {
         Goals3 displacements = {noGoals(), noGoals(), noGoals()};
         for (std::size_t f = 0; f < frames(); ++f)
           follow(clearance_.displacementOut(a, bone, targetAt(f)), f, displacements);
-        const Curve3 smooth(displacements, target_.frameSeconds, following(kHandSeconds));
+        const Curve3 smooth(displacements, target_.frameSeconds, following(kChangeTimes.handSeconds));
         for (std::size_t f = 0; f < frames(); ++f) {
           clearance_.swing(a, bone, smooth.at(f), targetAt(f), target_.poses[f]);
         }

@@ -6,8 +6,6 @@
 
 #include <cmath>
 
-#include "limber/motion/limbs/spring.h"
-
 namespace limber {
 
 namespace {
@@ -35,10 +33,6 @@ double baseHeight(const FootLock::Frame& frame, FootAnchor anchor) {
 
 }  // namespace
 
-void FootLock::Factor::follow(double wanted, double seconds) {
-  springTo(wanted, kLocking.grip, seconds, value, speed);
-}
-
 // The first frame is where the foot is, but on the ground at once.
 void FootLock::begin(const Frame& frame) {
   anchor_ = frame.anchor;
@@ -46,10 +40,10 @@ void FootLock::begin(const Frame& frame) {
   lost_ = false;
   out_ = frame.ankle;
   out_.y() = baseHeight(frame, anchor_);
-  freedom_.follow(anchor_ != FootAnchor::kNone ? frame.slip : 1, 0);
+  freedom_.drawTo(anchor_ != FootAnchor::kNone ? frame.slip : 1, kLocking.grip, 0);
   lift_ = liftSpeed_ = 0;
   catchUpSpeed_ = rollSpeed_ = Vec3::Zero();
-  turning_.follow(frame.flat ? 0 : 1, 0);
+  turning_.drawTo(frame.flat ? 0 : 1, kLocking.grip, 0);
   twist_ = 0;
   twisted_ = false;
   roll_ = frame.toes - frame.ankle;
@@ -70,7 +64,7 @@ Vec3 FootLock::next(const Frame& frame, double seconds, double slack) {
 
 void FootLock::turn(const Frame& frame, double seconds) {
   twisted_ = frame.flat && std::abs(twist_) > (twisted_ ? kLocking.caughtUp : 1) * kLocking.maxTwist;
-  turning_.follow(frame.flat && !twisted_ ? 0 : 1, seconds);
+  turning_.drawTo(frame.flat && !twisted_ ? 0 : 1, kLocking.grip, seconds);
   const Vec3 from = alongGround(before_->toes - before_->ankle), to = alongGround(frame.toes - frame.ankle);
   const double turned = std::atan2(from.cross(to).y(), from.dot(to));
   twist_ = (twist_ - (1 - turning_.value) * turned) * std::exp(-kLocking.untwisting * turning_.value * seconds);
@@ -82,7 +76,7 @@ void FootLock::turn(const Frame& frame, double seconds) {
 void FootLock::moveAlong(const Frame& frame, double seconds, double slack) {
   const Vec3 behind = alongGround(before_->ankle - out_);
   lost_ = frame.anchor != FootAnchor::kNone && behind.norm() > (lost_ ? kLocking.caughtUp : 1) * slack;
-  freedom_.follow(frame.anchor != FootAnchor::kNone && !lost_ ? frame.slip : 1, seconds);
+  freedom_.drawTo(frame.anchor != FootAnchor::kNone && !lost_ ? frame.slip : 1, kLocking.grip, seconds);
   const double freedom = freedom_.value;
 
   Vec3 left = -behind;

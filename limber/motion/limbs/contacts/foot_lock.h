@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "limber/motion/limbs/contacts/contact_track.h"
+#include "limber/motion/limbs/spring.h"
 
 namespace limber {
 
@@ -30,11 +31,6 @@ class FootLock {
   void reset() { before_.reset(); }
 
  private:
-  // To which the foot is free, 0 to 1.
-  struct Factor {
-    double value = 1, speed = 0;
-    void follow(double wanted, double seconds);
-  };
   void begin(const Frame& frame);
   void turn(const Frame& frame, double seconds);
   void moveAlong(const Frame& frame, double seconds, double slack);
@@ -43,11 +39,11 @@ class FootLock {
   FootAnchor anchor_ = FootAnchor::kNone;
   bool byToes_ = false;  // whether the toes are, or last were, the pinned point
   Vec3 out_ = Vec3::Zero();
-  Factor freedom_;
+  SprungNumber freedom_{1, 0};  // 0 to 1; to which the foot is free
   bool lost_ = false;
   Vec3 catchUpSpeed_ = Vec3::Zero(), rollSpeed_ = Vec3::Zero();
   double lift_ = 0, liftSpeed_ = 0;  // over where the anchor has the ankle, fades out
-  Factor turning_;
+  SprungNumber turning_{1, 0};       // likewise, to turn about the vertical
   bool twisted_ = false;
   double twist_ = 0;
   Vec3 roll_ = Vec3::Zero(), rolled_ = Vec3::Zero();  // from the ankle to the toes, and its level change in this frame
