@@ -7,6 +7,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "limber/core/file/file.h"
+#include "limber/core/known_error.h"
 #include "limber/core/progress.h"
 #include "limber/document/asset.h"
 
@@ -90,6 +92,17 @@ CLI::Validator numberIn(double low, double high);
 CLI::Validator seedNumber();
 // A moment of a clip in seconds; one after its end is the end.
 CLI::Validator momentOfClip();
+
+// What `parse` makes of a file's text, or of standard input's. Its errors name the file.
+template <typename Parse>
+auto parsedFile(const std::string& file, const Parse& parse) {
+  const Bytes bytes = readFile(file);
+  try {
+    return parse(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+  } catch (const Error& error) {
+    throwWithin(error, file == "-" ? "standard input" : file);
+  }
+}
 
 // On standard output. Control characters in it, but for lines and tabs, are shown, not obeyed; so they are by
 // writeText. Not for JSON, where they would no longer say what they are: dumpReport escapes them.

@@ -10,7 +10,6 @@
 #include "limber/actions/rig/auto_rig.h"
 #include "limber/core/file/file.h"
 #include "limber/core/file/folder.h"
-#include "limber/core/known_error.h"
 #include "limber/document/gltf/json_text.h"
 #include "limber/document/read.h"
 #include "limber/evaluate/motion/ik_evaluation.h"
@@ -60,14 +59,12 @@ void runMeasures(const AgreementFiles& options) {
   checkOutput(options.output, {".md"});
   std::vector<Json> documents;
   for (const std::string& file : options.cells) {
-    const Bytes text = readFile(file);
-    try {
+    documents.push_back(parsedFile(file, [](std::string_view text) {
       Warnings unheard;
-      documents.push_back(parseJson({reinterpret_cast<const char*>(text.data()), text.size()}, unheard));
-      measureAgreement(std::span(&documents.back(), 1));
-    } catch (const Error& error) {
-      throwWithin(error, file);
-    }
+      Json document = parseJson(text, unheard);
+      measureAgreement(std::span(&document, 1));
+      return document;
+    }));
   }
   const std::vector<MeasureAgreement> agreements = measureAgreement(documents);
   if (agreements.empty()) {
@@ -136,12 +133,7 @@ void runRiggers(RiggersOptions options) {
   const std::filesystem::path folder = std::filesystem::path(options.labels).parent_path();
   std::vector<std::filesystem::path> files(options.files.begin(), options.files.end());
   if (!options.labels.empty()) {
-    const Bytes text = readFile(options.labels);
-    try {
-      labels = parseLabelledFiles({reinterpret_cast<const char*>(text.data()), text.size()});
-    } catch (const Error& error) {
-      throwWithin(error, options.labels);
-    }
+    labels = parsedFile(options.labels, parseLabelledFiles);
     if (!options.split.empty()) {
       std::erase_if(labels, [&](const LabelledFile& file) { return file.split != options.split; });
       if (labels.empty()) {

@@ -72,12 +72,7 @@ PoseEdits collectEdits(const PoseArguments& options) {
 // A file, or the name of a sample.
 PortablePose portablePose(const std::string& named) {
   if (!lowerCase(named).ends_with(".json")) return makeSamplePose(named);
-  const Bytes bytes = readFile(named);
-  try {
-    return poseFromJson({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-  } catch (const Error& error) {
-    throw error.within(named);
-  }
+  return parsedFile(named, poseFromJson);
 }
 
 bool isPoseFile(const std::string& file) {
@@ -92,12 +87,7 @@ RootMotion rootMotionOf(const std::string& name) {
 
 std::optional<JointLimits> readLimits(const std::string& file, const Skeleton& skeleton) {
   if (file.empty()) return std::nullopt;
-  const Bytes bytes = readFile(file);
-  try {
-    return limitsFromJson({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, skeleton);
-  } catch (const Error& error) {
-    throw error.within(file);
-  }
+  return parsedFile(file, [&](std::string_view text) { return limitsFromJson(text, skeleton); });
 }
 
 // None: as the file's nodes stand.

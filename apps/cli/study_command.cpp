@@ -12,7 +12,6 @@
 #include "command.h"
 #include "limber/core/counted.h"
 #include "limber/core/file/file.h"
-#include "limber/core/known_error.h"
 #include "limber/core/parallel.h"
 #include "limber/jobs/own_program.h"
 #include "limber/study/report/cell_table.h"
@@ -35,12 +34,7 @@ struct StudyArguments {
 };
 
 StudyPlan readPlan(const std::string& file, const AdapterArguments& adapters) {
-  const Bytes text = readFile(file);
-  try {
-    return studyPlanFromJson({reinterpret_cast<const char*>(text.data()), text.size()}, adapters.allFolders());
-  } catch (const Error& error) {
-    throwWithin(error, file == "-" ? "standard input" : file);
-  }
+  return parsedFile(file, [&](std::string_view text) { return studyPlanFromJson(text, adapters.allFolders()); });
 }
 
 void writeReport(const StudyResult& study, std::span<const Vote> votes, const std::filesystem::path& folder,
