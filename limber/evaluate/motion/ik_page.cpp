@@ -106,7 +106,7 @@ Table goalTable(std::span<const IkScore> scores) {
                goal.wantedMicros > 0 ? fmt::format("{} µs", goal.wantedMicros)
                                      : fmt::format("{:g} % solved", 100 * goal.targetFraction),
                fmt::format("{:.2f} µs, {:.1f} % solved", score->medianMicros, 100 * score->fraction()),
-               goal.elsewhere});
+               goal.elsewhere.empty() ? Cell() : Cell(goal.elsewhere)});
   }
   return table;
 }
