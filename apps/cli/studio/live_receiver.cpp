@@ -29,7 +29,7 @@ constexpr std::size_t kMaxPackets = 20'000;             // a second
 constexpr int kMaxAtOnce = 1000;                        // packets, before there is a look at other things
 constexpr std::size_t kMaxBvhBytes = 16 * 1024 * 1024;  // a second
 constexpr double kFrameSeconds = 1.0 / 250;             // between two frames that are handed on
-constexpr int kLook = 50;                               // milliseconds between two looks whether it is over
+constexpr int kReceiverPoll = 50;                       // milliseconds between two looks whether it is over
 
 // Counts how much comes within each second.
 class PerSecond {
@@ -208,7 +208,7 @@ void LiveReceiver::run() {
     const double left = handed + kFrameSeconds - now();
     const bool waits = (vmc.hasFrame() || bvh.hasFrame()) && left > 0;
     std::array<pollfd, 2> sockets = {pollfd{udp_, POLLIN, 0}, pollfd{bvh.rests(now()) ? -1 : bvh.socket(), POLLIN, 0}};
-    poll(sockets.data(), sockets.size(), waits ? static_cast<int>(left * 1000) + 1 : kLook);
+    poll(sockets.data(), sockets.size(), waits ? static_cast<int>(left * 1000) + 1 : kReceiverPoll);
     if (sockets[0].revents != 0) vmc.receive(now());
     if (sockets[1].revents != 0) bvh.receive(now());
     if (now() < handed + kFrameSeconds) continue;

@@ -16,7 +16,7 @@ namespace {
 // too.
 constexpr double kUprightSlope = 4;
 // That are looked at: more of a long recording tell nothing new, and a file may have joints without channels.
-constexpr std::size_t kMaxFrames = 2000, kMaxPositions = 4000000;
+constexpr std::size_t kMaxSampledFrames = 2000, kMaxPositions = 4000000;
 constexpr double kAbout = 0.7;  // cosine of 45 degrees, about
 // Fractions of the frames. A recording that is upright along one axis in a tenth of them does not have its other axis
 // up.
@@ -102,7 +102,7 @@ FramePostures framePostures(const Motion& motion, const BvhEnds& ends) {
   const Clip& clip = motion.clips.front();
   const std::size_t count = frameCount(clip, motion.framesPerSecond);
   const std::size_t joints = motion.skeleton.jointCount();
-  const std::size_t most = std::clamp<std::size_t>(kMaxPositions / joints, 1, kMaxFrames);
+  const std::size_t most = std::clamp<std::size_t>(kMaxPositions / joints, 1, kMaxSampledFrames);
   const std::size_t step = (count + most - 1) / most;
   Vec3 sum = Vec3::Zero(), squares = Vec3::Zero();
   postures.lowest.setConstant(std::numeric_limits<double>::infinity());

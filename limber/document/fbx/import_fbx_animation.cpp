@@ -227,9 +227,9 @@ struct ClipRange {
 };
 
 // Writes the tracks of one clip into the document.
-class ClipWriter {
+class ImportedClip {
  public:
-  ClipWriter(Asset& asset, const std::string& name, ClipRange range, ClipBudget& budget)
+  ImportedClip(Asset& asset, const std::string& name, ClipRange range, ClipBudget& budget)
       : asset_(asset), range_(range), budget_(budget) {
     animation_.name = name;
   }
@@ -316,7 +316,7 @@ class ClipSampler {
   ClipSampler(const FbxModels& models, const FbxClipCurves& clip, std::int64_t start, double scale)
       : models_(models), clip_(clip), start_(start), scale_(scale) {}
 
-  void addModel(Index m, Index node, ClipWriter& writer) const {
+  void addModel(Index m, Index node, ImportedClip& writer) const {
     const std::array<KeyTicks, 3> ticks = ticksOf(m);
     writer.addTrack(node, TrackPath::kTranslation, 3, ticks[0],
                     [&](std::int64_t at, bool fromLeft) { return Row(scale_ * localAt(m, at, fromLeft).translation); });
@@ -326,7 +326,7 @@ class ClipSampler {
                     [&](std::int64_t at, bool fromLeft) { return Row(localAt(m, at, fromLeft).scale); });
   }
 
-  void addShapes(const FbxShapesInUse& use, ClipWriter& writer) const {
+  void addShapes(const FbxShapesInUse& use, ImportedClip& writer) const {
     const auto percentOf = [&](const FbxShapeChannel& channel) {
       const auto found = clip_.percents.find(channel.object);
       return found == clip_.percents.end() ? FbxPercent{nullptr, channel.percent} : found->second;
@@ -490,7 +490,7 @@ void FbxAnimations::addClips(Asset& asset, const std::vector<std::optional<Index
                        static_cast<std::size_t>(read_bounds::kFbxClipNumbers.of(keys))};
   for (const FbxClipCurves& clip : clips_) {
     const ClipRange range = rangeOf(clip, asset.warnings);
-    ClipWriter writer(asset, clip.name, range, budget);
+    ImportedClip writer(asset, clip.name, range, budget);
     const ClipSampler sampler(models_, clip, range.start, scale);
     for (Index m = 0; m < models_.count(); ++m) {
       if (nodeOf[m]) sampler.addModel(m, *nodeOf[m], writer);

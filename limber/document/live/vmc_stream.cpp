@@ -11,8 +11,8 @@ namespace limber {
 
 namespace {
 
-constexpr double kSettled = 0.25;  // seconds without a new bone: all of a performer's come within a few frames
-constexpr double kFarthest = 1e4;  // metres
+constexpr double kSettled = 0.25;       // seconds without a new bone: all of a performer's come within a few frames
+constexpr double kFarthestJoint = 1e4;  // metres
 
 // In the order of Unity's HumanBodyBones but that parents come first; `above` are parents, nearest first, of which not
 // all performers have each. `smpl` is the joint that lies there in smplSkeleton.
@@ -95,7 +95,7 @@ std::optional<Transform> transformIn(const OscMessage& message) {
   std::array<double, kBoneNumbers> numbers;
   for (std::size_t i = 0; i < kBoneNumbers; ++i) {
     const float* const value = std::get_if<float>(&message.values[i + 1]);
-    if (!value || !(std::abs(*value) <= kFarthest)) return std::nullopt;
+    if (!value || !(std::abs(*value) <= kFarthestJoint)) return std::nullopt;
     numbers[i] = *value;
   }
   Transform transform;

@@ -23,7 +23,7 @@ using ::testing::FloatEq;
 using ::testing::HasSubstr;
 using testing::warningKinds;
 
-constexpr std::string_view kTriangle =
+constexpr std::string_view kPlyTriangle =
     "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
     "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
 
@@ -76,7 +76,7 @@ std::string binaryTriangle(bool bigEndian, Number firstX, const char* lineEnd = 
 }
 
 TEST(Ply, TextAndBothOrdersOfBytesAreTheSame) {
-  const std::vector<float> wanted = attributeOf(read(kTriangle), "POSITION");
+  const std::vector<float> wanted = attributeOf(read(kPlyTriangle), "POSITION");
   EXPECT_THAT(wanted, ElementsAre(0, 0, 0, 1, 0, 0, 0, 1, 0));
   for (const bool bigEndian : {false, true}) {
     for (const char* lineEnd : {"\n", "\r\n", "\r"}) {
@@ -84,7 +84,7 @@ TEST(Ply, TextAndBothOrdersOfBytesAreTheSame) {
       EXPECT_EQ(attributeOf(read(binaryTriangle(bigEndian, 0.0, lineEnd)), "POSITION"), wanted);
     }
   }
-  EXPECT_EQ(collectGeometry(read(kTriangle)).triangles.size(), 1u);
+  EXPECT_EQ(collectGeometry(read(kPlyTriangle)).triangles.size(), 1u);
 }
 
 // A number's first byte may be one that ends lines or separates words in text.
@@ -166,15 +166,15 @@ TEST(Ply, WhatElseItHoldsIsPassedOver) {
 
 TEST(Ply, AHeaderWithoutEndIsRefused) {
   for (const std::size_t length : {5u, 19u, 40u, 120u}) {
-    EXPECT_EQ(refusal(kTriangle.substr(0, length)), "t.ply: cannot be read as PLY: its header has no end");
+    EXPECT_EQ(refusal(kPlyTriangle.substr(0, length)), "t.ply: cannot be read as PLY: its header has no end");
   }
   EXPECT_THAT(refusal("ply\nformat ascii 1.0\nelement vertex 4000000000\nend_header\n0 0 0\n"),
               HasSubstr("more elements than it can hold"));
 }
 
 TEST(Ply, ACutFileIsRefused) {
-  EXPECT_THAT(refusal(kTriangle.substr(0, kTriangle.find("0 1 0\n"))), HasSubstr("it is cut off"));
-  EXPECT_THAT(refusal(kTriangle.substr(0, kTriangle.find("3 0 1 2"))), HasSubstr("it is cut off"));
+  EXPECT_THAT(refusal(kPlyTriangle.substr(0, kPlyTriangle.find("0 1 0\n"))), HasSubstr("it is cut off"));
+  EXPECT_THAT(refusal(kPlyTriangle.substr(0, kPlyTriangle.find("3 0 1 2"))), HasSubstr("it is cut off"));
   const std::string binary = binaryTriangle(false, 0.f);
   for (std::size_t length = binary.find("end_header") + 11; length < binary.size(); ++length) {
     EXPECT_THAT(refusal(std::string_view(binary).substr(0, length)), HasSubstr("it is cut off"));
@@ -183,7 +183,7 @@ TEST(Ply, ACutFileIsRefused) {
 
 TEST(Ply, WhatMakesNoSenseIsRefusedByName) {
   const auto triangle = [](const char* what, const char* instead) {
-    std::string text(kTriangle);
+    std::string text(kPlyTriangle);
     return text.replace(text.find(what), std::strlen(what), instead);
   };
   EXPECT_THAT(refusal(triangle("ascii", "binary_mixed_endian")), HasSubstr("none of PLY's three"));

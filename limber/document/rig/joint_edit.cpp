@@ -22,10 +22,6 @@ void writeNames(Asset& asset, const AssetSkeleton& skeleton) {
   }
 }
 
-void appendMatrix(std::vector<float>& values, const Affine& matrix) {
-  for (int i = 0; i < 16; ++i) values.push_back(static_cast<float>(matrix.matrix()(i % 4, i / 4)));
-}
-
 // Other joints for a skin, each with where it was bound.
 void writeSkinJoints(Asset& asset, Index skin, const std::vector<Index>& nodes, const std::vector<float>& matrices) {
   gltf::Skin& target = asset.document.skins[skin];
@@ -88,11 +84,11 @@ void takeOutOfSkins(Asset& asset, const BindPose& bind, Index node, Index heir) 
     for (std::size_t j = 0; j < binding.joints.size(); ++j) {
       if (binding.joints[j] == node) continue;
       nodes.push_back(binding.joints[j]);
-      appendMatrix(matrices, binding.inverseBinds[j]);
+      appendMatrix(binding.inverseBinds[j], matrices);
     }
     if (std::find(nodes.begin(), nodes.end(), heir) == nodes.end()) {
       nodes.push_back(heir);
-      appendMatrix(matrices, toJoint(bind.nodeWorld[heir], bind.skinToWorld[skin], heir));
+      appendMatrix(toJoint(bind.nodeWorld[heir], bind.skinToWorld[skin], heir), matrices);
     }
     writeSkinJoints(asset, skin, nodes, matrices);
     std::optional<Index>& root = asset.document.skins[skin].skeleton;
@@ -126,9 +122,9 @@ void addJoint(Asset& asset, const AssetSkeleton& skeleton, Index parent, const V
     const SkinBinding binding = readSkinBinding(asset, skin);
     std::vector<Index> joints = binding.joints;
     std::vector<float> matrices;
-    for (const Affine& matrix : binding.inverseBinds) appendMatrix(matrices, matrix);
+    for (const Affine& matrix : binding.inverseBinds) appendMatrix(matrix, matrices);
     joints.push_back(node);
-    appendMatrix(matrices, toJoint(bind.nodeWorld[above] * local, bind.skinToWorld[skin], node));
+    appendMatrix(toJoint(bind.nodeWorld[above] * local, bind.skinToWorld[skin], node), matrices);
     writeSkinJoints(asset, skin, joints, matrices);
   }
   unused.sweep(asset);

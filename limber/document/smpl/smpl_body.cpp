@@ -23,7 +23,7 @@ namespace limber {
 namespace {
 
 constexpr std::size_t kMaxShapes = 10;
-constexpr std::size_t kMaxInfluences = 8;
+constexpr std::size_t kMaxBodyInfluences = 8;
 
 std::vector<Triangle> readTriangles(const NpzFiles& files, std::size_t vertices) {
   const NpyArray array = neededSmplArray(files, "f");
@@ -52,7 +52,7 @@ NpyArray readWeightRows(const NpzFiles& files, std::size_t vertices) {
 SkinWeights strongest(const NpyArray& array) {
   const std::size_t vertices = array.shape[0], joints = array.shape[1];
   SkinWeights weights;
-  weights.slots = static_cast<Index>(std::min(joints, kMaxInfluences));
+  weights.slots = static_cast<Index>(std::min(joints, kMaxBodyInfluences));
   weights.joints.assign(vertices * weights.slots, 0);
   weights.weights.assign(vertices * weights.slots, 0.0f);
   std::vector<std::pair<float, Index>> used;

@@ -24,7 +24,7 @@ namespace {
 
 constexpr std::size_t kMaxSmplFrames = std::size_t{1} << 22;  // their times still differ in single precision
 constexpr std::size_t kMaxNumbersOfFrame = 3 * 55;
-constexpr double kUsualRate = 30;  // frames a second
+constexpr double kUsualBodyRate = 30;  // frames a second
 constexpr double kLowestRate = 1e-6, kHighestRate = 1e6;
 constexpr double kLargestNumber = 1e30;  // leaves single precision room for products
 constexpr std::size_t kHandJoints = 15, kFaceJoints = 3;
@@ -206,7 +206,7 @@ double readRate(const NpzFiles& arrays, Warnings& warnings) {
   if (rate && *rate >= kLowestRate && *rate <= kHighestRate) return *rate;
   warnings.add("frame-rate", rate ? fmt::format("frame rate of {:g} is replaced by 30 a second", *rate)
                                   : "frame rate is not told, and taken as 30 a second");
-  return kUsualRate;
+  return kUsualBodyRate;
 }
 
 void repairNumbers(SmplRows& rows, Warnings& warnings) {

@@ -11,10 +11,10 @@ namespace limber {
 
 namespace {
 
-constexpr double kNear = 0.13;             // heights: a hand's joint this near to a bone or to the other hand may touch
-constexpr double kAround = 0.1;            // seconds before and after a contact begins or ends
-constexpr double kSlackSeconds = 0.05;     // by which contacts may begin and end elsewhere and still agree
-constexpr double kSeenSeconds = 1.0 / 30;  // to each side of a frame, over which a speed is seen
+constexpr double kNear = 0.13;          // heights: a hand's joint this near to a bone or to the other hand may touch
+constexpr double kAround = 0.1;         // seconds before and after a contact begins or ends
+constexpr double kSlackSeconds = 0.05;  // by which contacts may begin and end elsewhere and still agree
+constexpr double kSpeedSeconds = 1.0 / 30;  // to each side of a frame, over which a speed is seen
 constexpr double kPeakFraction = 0.999;
 constexpr double kStillJerk = 2e-5;  // heights, a third difference: what is smoother counts as this rough
 
@@ -146,7 +146,7 @@ class Judge {
   void judgeContacts(RetargetVerdict& verdict) {
     const FootPoints points = footPoints(setup_);
     const auto slack = static_cast<std::size_t>(std::round(kSlackSeconds / seconds_));
-    const auto reach = static_cast<std::size_t>(std::max(1.0, std::round(kSeenSeconds / seconds_)));
+    const auto reach = static_cast<std::size_t>(std::max(1.0, std::round(kSpeedSeconds / seconds_)));
     double slid = 0, sourceSlid = 0, frames = 0;
     std::vector<bool> changes(count(), false);
     for (std::size_t i = 0; i < points.source.size(); ++i) {

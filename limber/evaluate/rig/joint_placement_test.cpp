@@ -12,7 +12,7 @@
 namespace limber {
 namespace {
 
-constexpr double kRadius = 0.1;  // of the tube
+constexpr double kTubeRadius = 0.1;  // of the tube
 
 // A chain of three joints along the tube, which lies along x, moved off its axis.
 SkinnedModel chainInTube(const Vec3& off) {
@@ -33,7 +33,7 @@ double chordsOff(double e) {
   double sum = 0;
   for (int i = 0; i < 8; ++i) {
     const double a = kPi * i / 8;
-    sum += e * std::abs(std::cos(a)) / std::sqrt(kRadius * kRadius - e * e * std::sin(a) * std::sin(a));
+    sum += e * std::abs(std::cos(a)) / std::sqrt(kTubeRadius * kTubeRadius - e * e * std::sin(a) * std::sin(a));
   }
   return sum / 8;
 }

@@ -7,7 +7,7 @@
 namespace limber {
 namespace {
 
-constexpr std::size_t kFrames = 12, kJolt = 6;
+constexpr std::size_t kShortClip = 12, kJolt = 6;
 
 // A pelvis that stays and one leg, straight down and 1 long; its foot is moved aside in one frame. Its lower bone
 // points wherever the foot is, the upper one stays.
@@ -23,13 +23,13 @@ ChangedMotion jolted(const ChangeLayout& layout) {
 }
 
 struct Leg {
-  ChangeLayout layout{kFrames, {false}};
-  std::vector<FootFrame> feet = std::vector<FootFrame>(kFrames, FootFrame{false, -1, Vec3(0, -1, 0), 2});
+  ChangeLayout layout{kShortClip, {false}};
+  std::vector<FootFrame> feet = std::vector<FootFrame>(kShortClip, FootFrame{false, -1, Vec3(0, -1, 0), 2});
   MotionEnds ends;
   double jerkWeight = 1e4;
 
   Changes changes() const {
-    LeastChanges least(layout, feet, std::vector<bool>(kFrames), ends);
+    LeastChanges least(layout, feet, std::vector<bool>(kShortClip), ends);
     least.start(jolted(layout));
     return least.find(jerkWeight);
   }
@@ -58,24 +58,24 @@ double sumOf(const ChangeLayout& layout, const ChangedMotion& now, const Changes
 }
 
 TEST(LeastChanges, AreTheLeast) {
-  const ChangeLayout layout(kFrames, {false, true});
-  std::vector<bool> cuts(kFrames);
+  const ChangeLayout layout(kShortClip, {false, true});
+  std::vector<bool> cuts(kShortClip);
   cuts[5] = true;
   double phase = 0;
   const auto next = [&] { return std::sin(phase += 1.7); };
   ChangedMotion now;
-  for (std::size_t i = 0; i < kFrames * layout.perFrame(); ++i) now.changes.push_back(0.1 * next());
-  now.paths.assign(5, Path(kFrames));
+  for (std::size_t i = 0; i < kShortClip * layout.perFrame(); ++i) now.changes.push_back(0.1 * next());
+  now.paths.assign(5, Path(kShortClip));
   for (Path& path : now.paths) {
     for (Vec3& position : path) position = Vec3(next(), next(), next());
   }
-  now.slopes.assign(2, {std::vector<Slope>(kFrames), std::vector<Slope>(kFrames)});
+  now.slopes.assign(2, {std::vector<Slope>(kShortClip), std::vector<Slope>(kShortClip)});
   for (BoneSlopes& bones : now.slopes) {
     for (std::vector<Slope>& bone : bones) {
       for (Slope& slope : bone) slope = Slope::NullaryExpr(next);
     }
   }
-  const std::vector<FootFrame> free(2 * kFrames, FootFrame{false, -100, Vec3(0, -1, 0), 100});
+  const std::vector<FootFrame> free(2 * kShortClip, FootFrame{false, -100, Vec3(0, -1, 0), 100});
   LeastChanges squares(layout, free, cuts, {});
   squares.start(now);
   const Changes least = squares.find(10);
@@ -103,7 +103,7 @@ TEST(LeastChanges, TheJoltIsTakenBackAndTheRestFollowsTheLess) {
 TEST(LeastChanges, FeetThatStandTakeNoSteps) {
   Leg leg;
   for (FootFrame& foot : leg.feet) foot.planted = true;
-  for (std::size_t f = 1; f < kFrames; ++f) EXPECT_NEAR((leg.footAt(f) - leg.footAt(0)).norm(), 0, 1e-4);
+  for (std::size_t f = 1; f < kShortClip; ++f) EXPECT_NEAR((leg.footAt(f) - leg.footAt(0)).norm(), 0, 1e-4);
 }
 
 TEST(LeastChanges, FeetStayAboveTheirLowestAndWithinReach) {
@@ -121,7 +121,7 @@ TEST(LeastChanges, FeetStayAboveTheirLowestAndWithinReach) {
 TEST(LeastChanges, BoundsHoldWhileTheyAreMet) {
   Leg leg;
   for (FootFrame& foot : leg.feet) foot.lowest = -0.02;
-  LeastChanges least(leg.layout, leg.feet, std::vector<bool>(kFrames), {});
+  LeastChanges least(leg.layout, leg.feet, std::vector<bool>(kShortClip), {});
   ChangedMotion motion = jolted(leg.layout);
   motion.paths[2][kJolt] = Vec3(0, 0.2, 0);
   least.start(motion);
@@ -133,9 +133,9 @@ TEST(LeastChanges, BoundsHoldWhileTheyAreMet) {
 
 // Shoulders that rise go back where the trunk goes up: the leg below them reaches as far as it does there.
 TEST(LeastChanges, LegsReachFromShouldersThatRise) {
-  const ChangeLayout layout(kFrames, {true});
-  std::vector<FootFrame> feet(kFrames, FootFrame{false, -1, Vec3(0.6, -0.9, 0), 1, Vec3(-0.5, 1, 0)});
-  LeastChanges least(layout, feet, std::vector<bool>(kFrames), {});
+  const ChangeLayout layout(kShortClip, {true});
+  std::vector<FootFrame> feet(kShortClip, FootFrame{false, -1, Vec3(0.6, -0.9, 0), 1, Vec3(-0.5, 1, 0)});
+  LeastChanges least(layout, feet, std::vector<bool>(kShortClip), {});
   least.start(jolted(layout));
   const Changes changes = least.find(1e-3);
   const double rise = changes[layout.shoulders(kJolt)];
@@ -146,8 +146,8 @@ TEST(LeastChanges, LegsReachFromShouldersThatRise) {
 }
 
 TEST(LeastChanges, FeetTakeTheStepsAndComeToTheHeightsThatAreAsked) {
-  const ChangeLayout layout(kFrames, {false});
-  std::vector<FootFrame> feet(kFrames, FootFrame{false, -1, Vec3(0, -1, 0), 2});
+  const ChangeLayout layout(kShortClip, {false});
+  std::vector<FootFrame> feet(kShortClip, FootFrame{false, -1, Vec3(0, -1, 0), 2});
   for (FootFrame& foot : feet) {
     foot.step = Vec3(0.01, 0, -0.02);
     foot.height = 0.03;
@@ -155,10 +155,10 @@ TEST(LeastChanges, FeetTakeTheStepsAndComeToTheHeightsThatAreAsked) {
   }
   ChangeWeights weights;
   weights.hold = weights.rest = 1e6;
-  LeastChanges least(layout, feet, std::vector<bool>(kFrames), {}, weights);
+  LeastChanges least(layout, feet, std::vector<bool>(kShortClip), {}, weights);
   least.start(jolted(layout));
   const Changes changes = least.find(0);
-  for (std::size_t f = 0; f < kFrames; ++f) {
+  for (std::size_t f = 0; f < kShortClip; ++f) {
     EXPECT_NEAR(changes[layout.foot(f, 0) + 1], 0.03, 1e-5);
     if (f == 0) continue;
     const Vec3 step = displacementAt(changes, layout.foot(f, 0)) - displacementAt(changes, layout.foot(f - 1, 0));
@@ -168,14 +168,14 @@ TEST(LeastChanges, FeetTakeTheStepsAndComeToTheHeightsThatAreAsked) {
 
 // The foot follows a pelvis that the ground pushes up where its bones count, and stays where they do not.
 TEST(LeastChanges, BonesKeepTheirDirectionsWhereTheyCount) {
-  const ChangeLayout layout(kFrames, {false});
-  std::vector<FootFrame> feet(kFrames, FootFrame{false, -1, Vec3(0, -1, 0), 2});
+  const ChangeLayout layout(kShortClip, {false});
+  std::vector<FootFrame> feet(kShortClip, FootFrame{false, -1, Vec3(0, -1, 0), 2});
   for (FootFrame& foot : feet) foot.lowest = 0.1;
   const auto riseOfPelvis = [&](double bones) {
     ChangeWeights weights;
     weights.bones = bones;
     weights.pelvisUp = 0.01;
-    LeastChanges least(layout, feet, std::vector<bool>(kFrames), {}, weights);
+    LeastChanges least(layout, feet, std::vector<bool>(kShortClip), {}, weights);
     ChangedMotion still = jolted(layout);
     still.paths[2][kJolt] = Vec3::Zero();
     least.start(still);
@@ -197,9 +197,9 @@ TEST(LeastChanges, EndsStayOrCloseTheLoop) {
   joined.ends.startsJoined = joined.ends.endsJoined = true;
   for (const std::size_t f : {0u, 2u, 9u, 11u}) EXPECT_NEAR(joined.footAt(f).norm(), 0, 1e-6) << f;
   Leg loop;
-  EXPECT_GT((loop.footAt(0) - loop.footAt(kFrames - 1)).norm(), 1e-4);
+  EXPECT_GT((loop.footAt(0) - loop.footAt(kShortClip - 1)).norm(), 1e-4);
   loop.ends.loops = true;
-  EXPECT_NEAR((loop.footAt(0) - loop.footAt(kFrames - 1)).norm(), 0, 1e-6);
+  EXPECT_NEAR((loop.footAt(0) - loop.footAt(kShortClip - 1)).norm(), 0, 1e-6);
 }
 
 TEST(LeastChanges, ShouldersThatRiseHaveAPlaceInTheLayout) {
