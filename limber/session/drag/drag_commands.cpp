@@ -81,7 +81,8 @@ void apply(const SetTurn& c, SessionState& next) {
   if (!c.turn.allFinite()) refuse("the turn is no number");
   dragOnce(c, next, DragMode::kTurn, [&](Drag& drag, const Vec3&) {
     if (!c.relative) return drag.turnedTo(c.turn);
-    return c.turn.isZero(0) ? drag.start() : drag.turned(c.turn, c.turn.norm());
+    const Vec3 axis = c.turn.isZero(0) ? Vec3(Vec3::UnitY()) : c.turn;  // no degrees: about any axis
+    return drag.turned(axis, c.turn.norm());
   });
 }
 
