@@ -20,7 +20,7 @@ struct Read {
   std::vector<std::vector<OscValue>> values;
 };
 
-Read read(const Bytes& packet) {
+Read readPacket(const Bytes& packet) {
   Read read;
   read.whole = readOscPacket(packet, [&](const OscMessage& message) {
     read.addresses.emplace_back(message.address);
@@ -34,7 +34,7 @@ TEST(OscPacket, ReadsTheSpecificationsExample) {
   const Bytes packet = {0x2f, 0x66, 0x6f, 0x6f, 0,    0,    0,    0,    0x2c, 0x69, 0x69, 0x73, 0x66, 0x66,
                         0,    0,    0,    0,    3,    0xe8, 0xff, 0xff, 0xff, 0xff, 0x68, 0x65, 0x6c, 0x6c,
                         0x6f, 0,    0,    0,    0x3f, 0x9d, 0xf3, 0xb6, 0x40, 0xb5, 0xb2, 0x2d};
-  const Read found = read(packet);
+  const Read found = readPacket(packet);
   ASSERT_TRUE(found.whole);
   EXPECT_THAT(found.addresses, ElementsAre("/foo"));
   EXPECT_THAT(found.values[0], ElementsAre(OscValue(1000), OscValue(-1), OscValue(std::string_view("hello")),
@@ -44,29 +44,29 @@ TEST(OscPacket, ReadsTheSpecificationsExample) {
 TEST(OscPacket, TakesBundlesInBundles) {
   const Bytes one = oscMessage("/a", {1.0f}), two = oscMessage("/b", {std::string("text")}),
               three = oscMessage("/c", {});
-  EXPECT_THAT(read(oscBundle({one, oscBundle({two, three})})).addresses, ElementsAre("/a", "/b", "/c"));
-  EXPECT_TRUE(read(oscBundle({})).whole);
+  EXPECT_THAT(readPacket(oscBundle({one, oscBundle({two, three})})).addresses, ElementsAre("/a", "/b", "/c"));
+  EXPECT_TRUE(readPacket(oscBundle({})).whole);
   Bytes deep = one;
   for (int i = 0; i < 8; ++i) deep = oscBundle({deep});
-  EXPECT_TRUE(read(deep).whole);
-  EXPECT_FALSE(read(oscBundle({deep})).whole);
+  EXPECT_TRUE(readPacket(deep).whole);
+  EXPECT_FALSE(readPacket(oscBundle({deep})).whole);
 }
 
 TEST(OscPacket, RefusesWhatIsNone) {
-  EXPECT_FALSE(read({}).whole);
-  EXPECT_FALSE(read(oscMessage("no slash", {})).whole);
-  EXPECT_FALSE(read(oscMessage("/many", std::vector<testing::OscArgument>(33, 1.0f))).whole);
+  EXPECT_FALSE(readPacket({}).whole);
+  EXPECT_FALSE(readPacket(oscMessage("no slash", {})).whole);
+  EXPECT_FALSE(readPacket(oscMessage("/many", std::vector<testing::OscArgument>(33, 1.0f))).whole);
   Bytes other = oscMessage("/a", {1.0f});
   other[5] = 'b';  // a blob
-  EXPECT_FALSE(read(other).whole);
+  EXPECT_FALSE(readPacket(other).whole);
 }
 
 TEST(OscPacket, IsRefusedAtEveryLength) {
   const Bytes packet = oscBundle({oscMessage("/a", {std::string("name"), 1.0f, 2.0f})});
-  ASSERT_TRUE(read(packet).whole);
+  ASSERT_TRUE(readPacket(packet).whole);
   for (std::size_t size = 0; size < packet.size(); ++size) {
     if (size == 16) continue;  // an empty bundle
-    EXPECT_FALSE(read(Bytes(packet.begin(), packet.begin() + static_cast<std::ptrdiff_t>(size))).whole) << size;
+    EXPECT_FALSE(readPacket(Bytes(packet.begin(), packet.begin() + static_cast<std::ptrdiff_t>(size))).whole) << size;
   }
 }
 
@@ -77,7 +77,7 @@ TEST(OscPacket, DoesNotTrustAByte) {
     for (const int flip : {1, 0x80, 0xff}) {
       Bytes patched = packet;
       patched[at] = static_cast<std::uint8_t>(patched[at] ^ flip);
-      const Read found = read(patched);
+      const Read found = readPacket(patched);
       EXPECT_LE(found.addresses.size(), 2u);
       refused += found.whole ? 0 : 1;
     }
