@@ -23,7 +23,7 @@ constexpr double kFirstReach = 0.05;    // diagonals of a piece to the parts tha
 constexpr double kMinPiece = 0.01;      // longest sides: smaller pieces, and single vertices, look as far as these
 constexpr std::size_t kMaxPoints = 64;  // of a piece that look for what it hangs on
 constexpr int kBonePoints = 8;          // at which a bone is looked at
-constexpr double kInside = 2;           // votes of a point within another piece; one that lies on it has one
+constexpr double kVotesInside = 2;      // votes of a point within another piece; one that lies on it has one
 
 // Costs of giving a joint a piece that others touch, too.
 constexpr double kNoPair = 1e6;  // does not touch it
@@ -348,7 +348,7 @@ class PieceJoints {
       const Box& other = parts_[p].box;
       if ((other.min.array() > own.max.array()).any() || (own.min.array() > other.max.array()).any()) continue;
       for (const Vec3& point : loose.points) {
-        if (liesInside(p, point)) loose.inside[*pivotOf_[p]] += kInside;
+        if (liesInside(p, point)) loose.inside[*pivotOf_[p]] += kVotesInside;
       }
     }
   }
