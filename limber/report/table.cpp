@@ -130,7 +130,10 @@ std::string toMarkdown(const Table& table) {
 
 std::string toMarkdown(std::span<const Table> tables) {
   std::string text;
-  for (const Table& table : tables) text += (text.empty() ? "" : "\n") + toMarkdown(table);
+  for (const Table& table : tables) {
+    if (!text.empty()) text += "\n";
+    text += toMarkdown(table);
+  }
   return text;
 }
 
