@@ -9,8 +9,8 @@
 #include "limber/core/error.h"
 #include "limber/document/write.h"
 #include "limber/session/session_state.h"
+#include "limber/session/testing/commands.h"
 #include "limber/session/testing/models.h"
-#include "limber/session/testing/relative_commands.h"
 
 namespace limber {
 namespace {

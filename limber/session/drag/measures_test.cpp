@@ -4,16 +4,13 @@
 #include <nlohmann/json.hpp>
 
 #include "limber/core/error.h"
+#include "limber/session/testing/commands.h"
 #include "limber/session/testing/models.h"
-#include "limber/session/testing/relative_commands.h"
 
 namespace limber {
 namespace {
 
-void perform(Session& session, const Command& command) {
-  Progress progress;
-  session.run(command, progress);
-}
+using testing::perform;
 
 Session measured(Index handles) {
   Session session;

@@ -9,7 +9,7 @@
 #include "limber/samples/motions/sample_poses.h"
 #include "limber/session/rigged_model.h"
 #include "limber/session/session.h"
-#include "limber/session/testing/relative_commands.h"
+#include "limber/session/testing/commands.h"
 
 namespace limber {
 namespace {

@@ -5,8 +5,8 @@
 #include "limber/core/error.h"
 #include "limber/document/read.h"
 #include "limber/document/rig/pose_io.h"
+#include "limber/session/testing/commands.h"
 #include "limber/session/testing/models.h"
-#include "limber/session/testing/relative_commands.h"
 #include "limber/skeleton/clip/keys/keyframes.h"
 
 namespace limber {

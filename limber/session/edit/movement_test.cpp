@@ -16,8 +16,8 @@
 #include "limber/session/scene/session_file.h"
 #include "limber/session/session.h"
 #include "limber/session/session_state.h"
+#include "limber/session/testing/commands.h"
 #include "limber/session/testing/models.h"
-#include "limber/session/testing/relative_commands.h"
 #include "limber/skeleton/clip/keys/keyframes.h"
 #include "shared_data.h"
 

@@ -10,8 +10,8 @@
 #include "limber/document/read.h"
 #include "limber/session/session.h"
 #include "limber/session/session_state.h"
+#include "limber/session/testing/commands.h"
 #include "limber/session/testing/models.h"
-#include "limber/session/testing/relative_commands.h"
 
 namespace limber {
 namespace {

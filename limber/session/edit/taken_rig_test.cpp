@@ -14,12 +14,13 @@
 #include "limber/document/write.h"
 #include "limber/session/scene/scene.h"
 #include "limber/session/session_state.h"
+#include "limber/session/testing/commands.h"
 #include "limber/session/testing/models.h"
-#include "limber/session/testing/relative_commands.h"
 
 namespace limber {
 namespace {
 
+using testing::perform;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
@@ -97,11 +98,6 @@ std::optional<Bytes> rigFiles(std::string_view path) {
   if (path == "person.npz") return personNpz();
   if (path == "biped.glb") return testing::bipedGlb();
   return path == "walk.bvh" ? std::optional<Bytes>(testing::walkBvh()) : std::nullopt;
-}
-
-void perform(Session& session, const Command& command) {
-  Progress progress;
-  session.run(command, progress);
 }
 
 Session openedModel(const std::string& file) {

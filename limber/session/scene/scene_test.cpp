@@ -12,8 +12,8 @@
 #include "limber/session/scene/scene_layout.h"
 #include "limber/session/scene/scene_state.h"
 #include "limber/session/session_state.h"
+#include "limber/session/testing/commands.h"
 #include "limber/session/testing/models.h"
-#include "limber/session/testing/relative_commands.h"
 
 namespace limber {
 namespace {

@@ -1,11 +1,17 @@
-// Commands that change a joint from how it is, for tests of sessions. Not installed.
+// Commands as tests of sessions give them. Not installed.
 #pragma once
 
 #include <string>
 
-#include "limber/session/command.h"
+#include "limber/core/progress.h"
+#include "limber/session/session.h"
 
 namespace limber::testing {
+
+inline void perform(Session& session, const Command& command) {
+  Progress progress;
+  session.run(command, progress);
+}
 
 // About the joint's own origin, `axis` in the world.
 inline SetTurn turnedBy(const std::string& joint, const Vec3& axis, double degrees) {
