@@ -9,9 +9,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "shared_data.h"
@@ -59,8 +61,12 @@ class Running {
       done += static_cast<std::size_t>(wrote);
     }
   }
+  // Once the program catches it, which takes a while on a busy machine: before, it would end without a word.
   void signal(int number) {
     ASSERT_GT(pid_, 0);  // -1 would be everybody
+    for (int look = 0; look < 3000 && number != SIGKILL && !catches(number); ++look) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
     kill(pid_, number);
   }
 
@@ -80,6 +86,13 @@ class Running {
 
  private:
   static void redirect(int from, int to) { dup2(from, to); }
+  bool catches(int number) const {
+    std::ifstream status("/proc/" + std::to_string(pid_) + "/status");
+    for (std::string line; std::getline(status, line);) {
+      if (line.starts_with("SigCgt:")) return std::stoull(line.substr(7), nullptr, 16) >> (number - 1) & 1;
+    }
+    return true;  // it has ended
+  }
   std::string slurp(const char* name) const {
     std::ifstream file(folder_ / name, std::ios::binary);
     return {std::istreambuf_iterator<char>(file), {}};
