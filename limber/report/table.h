@@ -49,7 +49,7 @@ struct Cell {
       : number(static_cast<double>(value)) {}
   Cell(const std::optional<double>& value) : number(value) {}
 
-  std::optional<std::string> text;  // shown in place of the number where there are both
+  std::optional<std::string> text;  // shown instead of the number where there are both
   std::optional<double> number;
   bool isForeign = false;   // the words come out of a file or a plan, so Markdown escapes them; HTML escapes all words
   bool isBad = false;       // in HTML: in the color of what failed

@@ -5,6 +5,7 @@
 #include "limber/actions/transfer/transfer_asset.h"
 #include "limber/character/anatomy/body_part.h"
 #include "limber/character/anatomy/part_color.h"
+#include "limber/document/gltf/json_text.h"
 #include "limber/session/scene/state_json.h"
 #include "limber/skeleton/clip/keys/keyframes.h"
 #include "limber/skeleton/ik/limits/limit_outline.h"
@@ -41,14 +42,6 @@ Json jointsJson(const RiggedModel& rig) {
                       {"rest", vectorJson(rest[j].translation())}});
   }
   return joints;
-}
-
-Json warningsJson(const Warnings& warnings) {
-  Json list = Json::array();
-  for (const Warning& w : warnings.items()) {
-    list.push_back({{"kind", w.kind}, {"message", w.message}, {"where", w.where}, {"count", w.count}});
-  }
-  return list;
 }
 
 Json motionsJson(const Movement& movement) {
@@ -229,7 +222,7 @@ Json sessionState(const Session& session) {
       {"posed", !samePose(state.pose, rig.home)},
       {"undo", textOrNull(session.undoName())},
       {"redo", textOrNull(session.redoName())},
-      {"warnings", warningsJson(warnings)}};
+      {"warnings", toJson(warnings)}};
   if (rig.report) {
     for (const HandleSuggestion& suggestion : rig.report->suggestions)
       json["suggestions"].push_back(suggestion.handles);

@@ -38,7 +38,7 @@ std::vector<ReachReport> editPose(const Skeleton& skeleton, Pose& pose, const Po
 // The vertices of a rigged character as its joints stand in `pose`, in world space, with normals where the file has some
 // (zero elsewhere); blend shapes come first, with the weights that the nodes have.
 //
-// skeleton  its binding(), or moving(), of the document as it is: where a bind pose lies in the world is told from how
+// skeleton  its binding(), or moving(), of the document as it is: where a bind pose lies in the world follows from how
 //           the nodes stand, so a skeleton read before writeNodePose is not that of the document after it
 // deformer  of deformers()
 struct PosedGeometry {

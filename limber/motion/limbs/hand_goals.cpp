@@ -26,9 +26,9 @@ struct Reaching {
 };
 constexpr Reaching kReaching;
 
-// `wanted` beyond `edge`, but the slower the nearer it comes to `end`.
-double towards(double end, double edge, double wanted) {
-  const double room = end - edge, over = wanted - edge;
+// `distance` beyond `edge`, but the slower the nearer it comes to `end`.
+double towards(double end, double edge, double distance) {
+  const double room = end - edge, over = distance - edge;
   return room * over > 0 ? edge + room * (1 - std::exp(-over / room)) : edge;
 }
 
@@ -113,12 +113,12 @@ void HandGoals::softenReach(Arm& arm, const BodyFrame& target) const {
   const Vec3 displacement = arm.goal.position - shoulder;
   const double far = std::max(own.norm(), kReaching.softReach * arm.spec.length),
                near = std::min(own.norm(), kReaching.softFold * arm.spec.length);
-  const double wanted = displacement.norm();
-  if (wanted > far) {
-    arm.goal.position = shoulder + towards(kMaxStretch * arm.spec.length, far, wanted) / wanted * displacement;
-  } else if (wanted < near) {
-    const Vec3 line = wanted > 0 ? displacement.normalized() : own.normalized();
-    arm.goal.position = shoulder + towards(kReaching.fold * near, near, wanted) * line;
+  const double distance = displacement.norm();
+  if (distance > far) {
+    arm.goal.position = shoulder + towards(kMaxStretch * arm.spec.length, far, distance) / distance * displacement;
+  } else if (distance < near) {
+    const Vec3 line = distance > 0 ? displacement.normalized() : own.normalized();
+    arm.goal.position = shoulder + towards(kReaching.fold * near, near, distance) * line;
   }
 }
 

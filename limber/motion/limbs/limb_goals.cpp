@@ -199,9 +199,9 @@ void LimbGoals::setFeet(const BodyFrame& source, const BodyFrame& target, double
 
 SprungNumber LimbGoals::nextRise(const BodyFrame& target, double seconds) const {
   SprungNumber rise = rise_;
-  const double wanted = pelvis_.riseFor(legs_, target, pelvis_.turnFor(legs_, target));
+  const double goal = pelvis_.riseFor(legs_, target, pelvis_.turnFor(legs_, target));
   const bool atOnce = legs_.empty() || legs_.front().spec.support.risesAtOnce;
-  rise.drawTo(wanted, kFollowing.riseRate, atOnce ? 0 : seconds);
+  rise.drawTo(goal, kFollowing.riseRate, atOnce ? 0 : seconds);
   return rise;
 }
 

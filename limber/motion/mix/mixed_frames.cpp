@@ -178,9 +178,9 @@ class Mixer {
 
   // Turns a joint so that the next one lies in the direction of a position.
   void pointAt(Index joint, Index next, const Vec3& position, Pose& pose) {
-    const Vec3 now = frame_.positions[next] - frame_.positions[joint], wanted = position - frame_.positions[joint];
-    const Quat turn = shortestRotation(now, wanted);
-    if (!(now.norm() > 0 && wanted.norm() > 0) || std::abs(turn.w()) > kFootMixing.sameDirection) return;
+    const Vec3 now = frame_.positions[next] - frame_.positions[joint], goal = position - frame_.positions[joint];
+    const Quat turn = shortestRotation(now, goal);
+    if (!(now.norm() > 0 && goal.norm() > 0) || std::abs(turn.w()) > kFootMixing.sameDirection) return;
     const BodyKinematics& kinematics = body_.setup().targetKinematics;
     pose.locals[joint].rotation =
         kinematics.parentRotation(joint, frame_).conjugate() * (turn * frame_.rotations[joint]);

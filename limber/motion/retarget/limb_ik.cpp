@@ -95,11 +95,11 @@ class LimbIkRetargeter : public FrameRetargeter {
   }
 
   void reachBySolver(const LimbSpec& limb, const LimbGoal& goal, IkSolver& solver, Pose& target) {
-    IkTarget wanted;
-    wanted.joint = limb.end;
-    wanted.base = limb.upper;
-    wanted.position = setup_.targetNeutral.toBody.conjugate() * goal.position;
-    solver.solve(target, std::span<const IkTarget>(&wanted, 1));
+    IkTarget end;
+    end.joint = limb.end;
+    end.base = limb.upper;
+    end.position = setup_.targetNeutral.toBody.conjugate() * goal.position;
+    solver.solve(target, std::span<const IkTarget>(&end, 1));
   }
 
   const RetargetSetup& setup_;

@@ -42,9 +42,9 @@ double BodyLift::operator()(const BodyFrame& source, const BodyFrame& target) co
   double sum = 0, weights = 0;
   for (const Pair& pair : body_) {
     const double over = setup_.scale * (source.positions[pair.source].y() - setup_.sourceGround) / height;
-    const double wanted = kLifting.lies - softPositive(kLifting.lies - over, kLifting.soft);
+    const double goal = kLifting.lies - softPositive(kLifting.lies - over, kLifting.soft);
     const double is = (target.positions[pair.target].y() - setup_.targetGround) / height;
-    const double lacks = softPositive(wanted - is, kLifting.soft);
+    const double lacks = softPositive(goal - is, kLifting.soft);
     const double weight = std::exp(std::min(lacks, kLifting.max) / kLifting.soft);
     sum += weight * lacks;
     weights += weight;

@@ -78,8 +78,8 @@ void Pelvis::levelHips(Pose& target, BodyFrame& frame) const {
                       alongGround(frame.rotations[*trunk_] * neutral.rotations[*trunk_].conjugate() * restDirection));
   }
   levelled += (1 - levelled.norm()) * line;
-  const Vec3 wanted = (hipTurns_ * line + (1 - hipTurns_) * levelled).normalized();
-  root_.turnPelvis(shortestRotation(line, wanted), target, frame);
+  const Vec3 goal = (hipTurns_ * line + (1 - hipTurns_) * levelled).normalized();
+  root_.turnPelvis(shortestRotation(line, goal), target, frame);
 }
 
 Pelvis::Move Pelvis::moveFor(std::span<const Leg> legs, const BodyFrame& frame, std::optional<double> rise) const {

@@ -30,8 +30,8 @@ struct Detection {
 constexpr Detection kDetection;
 
 // 0 or 1 without a jump.
-void follow(bool wanted, double seconds, double& value, double& speed) {
-  springTo(wanted ? 1.0 : 0.0, kDetection.plantRate, seconds, value, speed);
+void follow(bool isOn, double seconds, double& value, double& speed) {
+  springTo(isOn ? 1.0 : 0.0, kDetection.plantRate, seconds, value, speed);
   value = std::clamp(value, 0.0, 1.0);
 }
 

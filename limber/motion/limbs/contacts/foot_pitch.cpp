@@ -63,8 +63,8 @@ void limitFootPitch(const RetargetSetup& setup, const RootPositioner& root, std:
     const double pitch = angleOf(line, resting),
                  flat = standing * kPitching.flat * kPitching.flat / (kPitching.flat * kPitching.flat + pitch * pitch);
     const double less = (1 - leg.footPitch * (1 - flat)) * upright;
-    const Vec3 wanted = ((1 - less) * line + less * resting).normalized();
-    const Quat limited = shortestRotation(line, wanted) * frame.rotations[leg.end];
+    const Vec3 lowered = ((1 - less) * line + less * resting).normalized();
+    const Quat limited = shortestRotation(line, lowered) * frame.rotations[leg.end];
     LimbReach(setup, root).turnEnd(leg.end, limited, frame, target);
   }
 }
