@@ -13,6 +13,7 @@ packages_installers=(dpkg-dev file help2man patchelf python3-wheel) # for ./dev 
 packages_blender=(blender python3-numpy xvfb xauth) # for the add-on's tests
 packages_bare=(mmdebstrap) # for a Debian with nothing on it
 packages_browser=(chromium fonts-dejavu-core)
+packages_learn=(python3 python3-torch python3-numpy python3-scipy libopenblas0-pthread) # for ./dev learn
 packages_cluster=(slurmctld slurmd slurm-client munge parallel) # for batches by engines
 packages_site=(cmake doxygen mkdocs mkdocs-material)
 packages_format=(clang-format)

@@ -1,0 +1,105 @@
+"""Trained networks -> one weights file, as limber/reading loads it, and back.
+
+Little endian: "LRD1", the length of a JSON text (u32), the text, zeros to a multiple of 4, then all tensors as IEEE
+half precision numbers in the order of the text's list "tensors", zeros to a multiple of 4. Matrices of linear steps
+are input-major: row = input.
+"""
+import json
+import struct
+
+import numpy as np
+import torch
+import torch.nn as nn
+
+import samples
+import vocabulary as words
+from network import make_network
+
+MAGIC = b"LRD1"
+MAX_BYTES = 1_500_000
+NO_CALIBRATION = {"plan_temperature": 1.0, "error_factor": 1.0, "sure_threshold": 0.9}
+
+
+def _linear_weights(network):
+    return {f"{name}.weight" for name, module in network.named_modules() if isinstance(module, nn.Linear)}
+
+
+def _tensors(kind, network):
+    linear = _linear_weights(network)
+    for name, value in network.state_dict().items():
+        yield f"{kind}.{name}", (value.T if name in linear else value).contiguous().numpy()
+
+
+def _padded(data):
+    return data + b"\0" * (-len(data) % 4)
+
+
+def write_weights(path, networks, calibration=None, card=None):
+    """networks: kind -> (network, sizes). Returns the number of bytes."""
+    tensors = [entry for kind, (network, _) in sorted(networks.items()) for entry in _tensors(kind, network.cpu())]
+    for name, value in tensors:
+        if not np.isfinite(value.astype("f2")).all():
+            raise SystemExit(f"{name} has numbers that half precision does not hold")
+    text = json.dumps({
+        "networks": {kind: {**sizes, "features": samples.FEATURES, "tokens": samples.TOKENS} 
+                     for kind, (_, sizes) in sorted(networks.items())},
+        "roles": words.ROLES, "parts": words.PARTS, "plans": words.PLANS,
+        "calibration": {name: (calibration or NO_CALIBRATION)[name] for name in NO_CALIBRATION}, "card": card or {},
+        "tensors": [{"name": name, "shape": list(value.shape)} for name, value in tensors],
+    }, separators=(",", ":")).encode()
+    data = b"".join(value.astype("<f2").tobytes() for _, value in tensors)
+    whole = _padded(MAGIC + struct.pack("<I", len(text)) + text) + _padded(data)
+    if len(whole) > MAX_BYTES:
+        raise SystemExit(f"the weights file would have {len(whole)} bytes, more than {MAX_BYTES}")
+    with open(path, "wb") as file:
+        file.write(whole)
+    return len(whole)
+
+
+def read_weights(path):
+    """kind -> network of a weights file, and the file's JSON."""
+    with open(path, "rb") as file:
+        whole = file.read()
+    if whole[:4] != MAGIC:
+        raise SystemExit(f"{path} is no weights file of limber")
+    size = struct.unpack_from("<I", whole, 4)[0]
+    about = json.loads(whole[8 : 8 + size])
+    at, values = len(_padded(whole[: 8 + size])), {}
+    for entry in about["tensors"]:
+        count = int(np.prod(entry["shape"]))
+        values[entry["name"]] = np.frombuffer(whole, "<f2", count, at).reshape(entry["shape"]).astype("f4")
+        at += 2 * count
+    networks = {}
+    for kind, sizes in about["networks"].items():
+        inner = {name: size for name, size in sizes.items() if name not in ("features", "tokens")}
+        network, _ = make_network(kind, **inner)
+        linear = _linear_weights(network)
+        state = {}
+        for name in network.state_dict():
+            value = values[f"{kind}.{name}"]
+            state[name] = torch.from_numpy(np.ascontiguousarray(value.T if name in linear else value))
+        network.load_state_dict(state)
+        networks[kind] = network.eval()
+    return networks, about
+
+
+def write_golden(path, networks, bodies):
+    """Inputs and outputs of some bodies, to compare another implementation of the arithmetic with."""
+    cases = []
+    for body in bodies:
+        inputs, centre, scale, _ = body.tokens()
+        tensor = torch.from_numpy(inputs[None])
+        with torch.no_grad():
+            case = {"name": body.name, "inputs": inputs.tolist(), "centre": centre.tolist(), "scale": scale}
+            if "reading" in networks:
+                pinned = int(np.flatnonzero(body.has)[0]) if body.has.any() else 0
+                position = ((body.roles[pinned] - centre) / scale).astype("f4")
+                said = networks["reading"](tensor)
+                after = networks["reading"](tensor, torch.tensor([[pinned]]), torch.from_numpy(position[None, None]))
+                case["reading"] = {name: value[0].tolist() for name, value in said.items()}
+                case["pin"] = {"role": pinned, "position": position.tolist(), "y": after["y"][0].tolist()}
+            if "stance" in networks:
+                case["stance"] = networks["stance"](tensor)[0].tolist()
+        cases.append(case)
+    with open(path, "w", encoding="utf-8") as file:
+        json.dump(cases, file)

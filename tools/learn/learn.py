@@ -1,0 +1,252 @@
+#!/usr/bin/python3
+"""Learns limber's reading of shapes from rigged models. See README.md beside this file.
+
+    learn.py prepare              rigged files -> samples and labels
+    learn.py make N               bodies made by code, and people by MakeHuman's data
+    learn.py train KIND           KIND: reading or stance; --fold K leaves out a fold's makers; goes on where it stopped
+    learn.py evaluate             tables of all folds that were trained, on the makers that each left out
+    learn.py calibrate            temperature, error factor and threshold from the folds
+    learn.py export FILE          the weights file
+    learn.py curve                figures over the number of bodies
+    learn.py folds                which makers each fold leaves out
+
+Every step can be run again; all seeds are fixed. What is made lies in --work, outside of the repository.
+"""
+import os
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # samplers run beside each other; --threads sets torch's own
+
+import argparse
+import glob
+import json
+import subprocess
+import sys
+from collections import Counter
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, HERE)
+REPOSITORY = os.path.dirname(os.path.dirname(HERE))
+BESIDE = os.path.dirname(REPOSITORY)
+FOLDS = 4
+
+
+def prepared(options):
+    return os.path.join(options.work, "prepared")
+
+
+def run_folder(options, kind, fold=None):
+    return os.path.join(options.work, "runs", kind if fold is None else f"{kind}_fold{fold}")
+
+
+def is_trained(run):
+    return os.path.exists(os.path.join(run, "state.pt"))
+
+
+def folds_of(options):
+    import numpy as np
+    from makers import MADE_PEOPLE, folds
+
+    makers = Counter()
+    for path in glob.glob(os.path.join(glob.escape(prepared(options)), "*.npz")):
+        with np.load(path) as file:
+            makers[str(file["maker"])] += not file["report_only"] and not str(file["source"]).startswith(MADE_PEOPLE)
+    return folds({maker: count for maker, count in makers.items() if count}, FOLDS)
+
+
+def do_prepare(options):
+    from prepare import prepare
+
+    prepare(options.data, prepared(options), options.limber, options.labels, options.only, options.limit, options.again)
+    people = os.path.join(options.work, "people")
+    if os.path.isdir(people):
+        prepare(people, prepared(options), options.limber, options.labels, options.only, options.limit, options.again)
+
+
+def do_make(options):
+    maker = os.path.join(HERE, "made_bodies.py")
+    if os.path.exists(maker):
+        subprocess.run([sys.executable, maker, os.path.join(options.work, "made"), str(options.count)], check=True)
+    generator = os.path.join(options.data, "made_people", "makehuman_synth.py")
+    if options.people and os.path.exists(generator):
+        out = os.path.join(options.work, "people", "made_people")
+        os.makedirs(out, exist_ok=True)
+        subprocess.run([sys.executable, generator, out, str(options.people), "--seed", "1"], check=True)
+
+
+def do_train(options):
+    from train import Options, train
+
+    leave_out = list(options.leave_out)
+    if options.fold is not None:
+        leave_out += folds_of(options)[options.fold]
+        print("leaves out", ", ".join(leave_out))
+    run = options.run or run_folder(options, options.kind, options.fold)
+    train(Options(
+        kind=options.kind, data=prepared(options), made=os.path.join(options.work, "made"), run=run,
+        leave_out=leave_out, samples=options.samples, batch=options.batch, rate=options.rate, threads=options.threads,
+        samplers=options.samplers, seed=options.seed, bodies=options.bodies, minutes=options.minutes,
+        device=options.device, start=options.start))
+
+
+def trained_folds(options):
+    found = [fold for fold in range(FOLDS) if is_trained(run_folder(options, "reading", fold))]
+    if not found:
+        raise SystemExit("no fold is trained: learn.py train reading --fold 0")
+    return found
+
+
+def do_evaluate(options):
+    from evaluate import evaluate_run, load_rows, report
+
+    runs = options.run or [run_folder(options, "reading", fold) for fold in trained_folds(options)]
+    if not options.kept:
+        for run in runs:
+            stance = run.replace("reading", "stance")
+            print("reading the makers that", os.path.basename(run), "left out", flush=True)
+            has_stance = stance != run and is_trained(stance)
+            evaluate_run(run, prepared(options), stance if has_stance else None, limit=options.limit or 0)
+    calibration = os.path.join(options.work, "calibration.json")
+    known = json.load(open(calibration, encoding="utf-8")) if os.path.exists(calibration) else None
+    text = report(load_rows(runs), known)
+    with open(os.path.join(options.work, "tables.md"), "w", encoding="utf-8") as file:
+        file.write(text)
+    print(text)
+
+
+def do_calibrate(options):
+    from calibrate import calibrate
+    from evaluate import load_rows
+
+    result = calibrate(load_rows([run_folder(options, "reading", fold) for fold in trained_folds(options)]))
+    with open(os.path.join(options.work, "calibration.json"), "w", encoding="utf-8") as file:
+        json.dump(result, file, indent=1)
+    print(json.dumps(result))
+
+
+def do_export(options):
+    from body import load_bodies
+    from export import read_weights, write_golden, write_weights
+    from network import load_network
+
+    networks, runs = {}, {}
+    for kind, run in (("reading", options.reading), ("stance", options.stance)):
+        run = run or run_folder(options, kind)
+        if is_trained(run):
+            network, saved = load_network(os.path.join(run, "state.pt"))
+            networks[kind] = network, saved["sizes"]
+            with open(os.path.join(run, "run.json"), encoding="utf-8") as file:
+                runs[kind] = json.load(file)
+            runs[kind].update(samples=saved["step"] * saved["batch"], hours=round(saved["seconds"] / 3600, 2))
+    if "reading" not in networks:
+        raise SystemExit("no network is trained: learn.py train reading")
+    path = os.path.join(options.work, "calibration.json")
+    calibration = json.load(open(path, encoding="utf-8")) if os.path.exists(path) else None
+    if calibration is None:
+        print("not calibrated (learn.py calibrate): confidence and errors are the network's own", file=sys.stderr)
+    if "stance" not in networks:
+        print("without a network for the stance (learn.py train stance), which limber asks for", file=sys.stderr)
+    about = runs["reading"]
+    card = {"seed": about["options"]["seed"], "data": {"bodies": about["bodies"], "plans": about["plans"]},
+            "makers": about["makers"], "licences": about["licences"], "left_out": about["options"]["leave_out"],
+            "samples": {kind: run["samples"] for kind, run in runs.items()},
+            "hours": {kind: run["hours"] for kind, run in runs.items()},
+            "calibrated_on": {name: calibration[name] for name in ("bodies", "makers")} if calibration else None}
+    size = write_weights(options.file, networks, calibration, card)
+    print(f"{options.file}: {size} bytes, networks {', '.join(networks)}")
+    if options.golden:
+        bodies = load_bodies(prepared(options))
+        chosen = [b for b in bodies if b.name in options.golden_bodies] or bodies[:3]
+        write_golden(options.golden, read_weights(options.file)[0], chosen)
+
+
+def do_curve(options):
+    from evaluate import evaluate_run, table
+    from train import Options, train
+
+    leave_out = folds_of(options)[options.fold or 0]
+    for count in options.counts:
+        run = os.path.join(options.work, "runs", f"reading_curve{count}")
+        train(Options(data=prepared(options), made=os.path.join(options.work, "made"), run=run, leave_out=leave_out,
+                      samples=options.samples, bodies=count, threads=options.threads, samplers=options.samplers,
+                      seed=options.seed))
+        rows = [row for row in evaluate_run(run, prepared(options)) if not row["report_only"]]
+        print(f"\n{count or 'all'} bodies\n" + table(rows, lambda row: row["group"], "group"), flush=True)
+
+
+def do_folds(options):
+    for index, makers in enumerate(folds_of(options)):
+        print(index, ", ".join(makers))
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--work", default=os.path.join(BESIDE, "learn_data"),
+                        help="what is prepared and learned (%(default)s)")
+    parser.add_argument("--data", default=os.environ.get("LIMBER_SHARED_DATA", os.path.join(BESIDE, "shared", "data")),
+                        help="rigged models (%(default)s)")
+    parser.add_argument("--limber", default=os.path.join(REPOSITORY, "build", "release", "limber"),
+                        help="the program (%(default)s)")
+    steps = parser.add_subparsers(dest="step", required=True)
+
+    step = steps.add_parser("prepare", help="rigged files -> samples and labels")
+    step.add_argument("--labels", nargs="*", default=[], help="further folders of labels set by hand")
+    step.add_argument("--only", default="", help="files whose path has this in it")
+    step.add_argument("--limit", type=int, help="at most so many files")
+    step.add_argument("--again", action="store_true", help="also those that are prepared already")
+    step.set_defaults(do=do_prepare)
+
+    step = steps.add_parser("make", help="bodies made by code, and people by MakeHuman's data")
+    step.add_argument("count", type=int)
+    step.add_argument("--people", type=int, default=0, help="people by MakeHuman's data, to be prepared after this")
+    step.set_defaults(do=do_make)
+
+    step = steps.add_parser("train", help="train a network, or go on with it")
+    step.add_argument("kind", choices=["reading", "stance"])
+    step.add_argument("--fold", type=int, choices=range(FOLDS), help="leave out this fold's makers")
+    step.add_argument("--leave-out", nargs="*", default=[], metavar="MAKER")
+    step.add_argument("--run", help="folder of the run (runs/KIND or runs/KIND_foldK of --work)")
+    step.add_argument("--start", default="", help="a run whose weights to start from")
+    step.add_argument("--bodies", type=int, default=0, help="only so many of the real bodies")
+    step.add_argument("--minutes", type=float, default=0, help="stop after so many; the same command goes on")
+    step.add_argument("--batch", type=int, default=16)
+    step.add_argument("--rate", type=float, default=2e-3, help="highest learning rate (%(default)s)")
+    step.add_argument("--device", default="cpu", help="cpu or cuda; what torch was built with")
+    _add_training(step, 1_000_000)
+    step.set_defaults(do=do_train)
+
+    step = steps.add_parser("evaluate", help="tables of makers left out")
+    step.add_argument("--run", nargs="*", help="runs to judge (all folds that are trained)")
+    step.add_argument("--kept", action="store_true", help="only print anew what was read last time")
+    step.add_argument("--limit", type=int, help="at most so many bodies of each run")
+    step.set_defaults(do=do_evaluate)
+
+    steps.add_parser("calibrate", help="confidence from the folds").set_defaults(do=do_calibrate)
+
+    step = steps.add_parser("export", help="write the weights file")
+    step.add_argument("file")
+    step.add_argument("--reading", help="run of the reading network")
+    step.add_argument("--stance", help="run of the stance network")
+    step.add_argument("--golden", help="also write inputs and outputs of three bodies to this JSON file")
+    step.add_argument("--golden-bodies", nargs="*", default=[], help="their names")
+    step.set_defaults(do=do_export)
+
+    step = steps.add_parser("curve", help="figures over the number of bodies")
+    step.add_argument("--counts", type=int, nargs="*", default=[50, 150, 300, 0], help="0: all")
+    step.add_argument("--fold", type=int, choices=range(FOLDS), default=0)
+    _add_training(step, 20_000)
+    step.set_defaults(do=do_curve)
+
+    steps.add_parser("folds", help="which makers each fold leaves out").set_defaults(do=do_folds)
+    return parser.parse_args()
+
+
+def _add_training(step, samples):
+    step.add_argument("--samples", type=int, default=samples, help="samples in all (%(default)s)")
+    step.add_argument("--threads", type=int, default=1, help="of torch (%(default)s)")
+    step.add_argument("--samplers", type=int, default=1, help="processes that draw samples (%(default)s)")
+    step.add_argument("--seed", type=int, default=1)
+
+
+if __name__ == "__main__":
+    chosen = arguments()
+    chosen.do(chosen)

@@ -1,0 +1,418 @@
+"""One body -> any number of training samples: posed, stretched, thickened, dressed, damaged, mirrored.
+
+Tokens are drawn after posing, and their inner balls measured there: what was made larger must not be recognised by the
+thinness of its samples. All randomness comes from the generator that is given.
+"""
+from dataclasses import dataclass
+
+import numpy as np
+
+import samples
+import vocabulary as words
+
+MAX_PINS = 5
+# Standard deviation of a joint's rotation, radians, by its part; in chains divided by the root of the number of joints.
+ROTATION = {"trunk": 0.09, "neck": 0.2, "head": 0.2, "tail": 0.25,
+            "fore_upper": 0.35, "fore_lower": 0.4, "fore_end": 0.2,
+            "hind_upper": 0.3, "hind_lower": 0.35, "hind_end": 0.15,
+            "mid": 0.22, "wing": 0.28, "fin": 0.2, "ear": 0.2}
+# Groups of parts that are stretched together.
+GROUP = {"neck": "neck", "head": "head", "tail": "tail", "fore_upper": "fore", "fore_lower": "fore", "fore_end": "hand",
+         "hind_upper": "hind", "hind_lower": "hind", "hind_end": "foot", "mid": "hind",
+         "wing": "wing", "fin": "fin", "ear": "ear"}
+GROUPS = sorted(set(GROUP.values()) | {"trunk"})
+LOOSE_GROUPS = ("head", "ear", "tail", "fin", "wing", "hand")  # whose sizes differ more between bodies
+UNIFORM_PARTS = ("head", "fore_end", "hind_end", "ear")  # stretched alike in all directions
+OPTIONAL = ("ear", "tail")  # parts that a body may lose and still be of its plan
+PROP = words.PART["prop"]
+
+
+@dataclass
+class Sample:
+    inputs: np.ndarray  # (tokens, 11)
+    y: np.ndarray  # (roles, 3) in the tokens' frame
+    has: np.ndarray  # (roles,)
+    part: np.ndarray  # (tokens,)
+    bone: np.ndarray  # (tokens, 6) offsets from the token to the two ends of its bone
+    bone_known: np.ndarray  # (tokens,)
+    plan: int
+    fingers: np.ndarray  # (2,)
+    pin_roles: np.ndarray  # (MAX_PINS,), -1: none
+    pin_positions: np.ndarray  # (MAX_PINS, 3)
+    stance: int
+
+
+@dataclass
+class _Cloud:
+    """Points on their way: all arrays are by point but for roles and has."""
+
+    points: np.ndarray
+    normals: np.ndarray
+    pieces: np.ndarray
+    part: np.ndarray
+    start: np.ndarray  # the two ends of each point's bone
+    end: np.ndarray
+    known: np.ndarray
+    flesh: np.ndarray  # radius of the inner ball at rest
+    roles: np.ndarray
+    has: np.ndarray
+    fingers: np.ndarray
+
+    def keep(self, chosen):
+        for name in ("points", "normals", "pieces", "part", "start", "end", "known", "flesh"):
+            setattr(self, name, getattr(self, name)[chosen])
+
+    def map_positions(self, function):
+        for name in ("points", "start", "end", "roles"):
+            setattr(self, name, function(getattr(self, name)))
+
+
+def rotations(vectors):
+    """(n, 3) rotation vectors -> (n, 3, 3)."""
+    angle = np.linalg.norm(vectors, axis=1)
+    x, y, z = (vectors / np.maximum(angle, 1e-9)[:, None]).T
+    zero = np.zeros_like(x)
+    cross = np.stack([zero, -z, y, z, zero, -x, -y, x, zero], 1).reshape(-1, 3, 3)
+    sine, rest = np.sin(angle)[:, None, None], (1 - np.cos(angle))[:, None, None]
+    return (np.eye(3) + sine * cross + rest * cross @ cross).astype("f4")
+
+
+def unit(vectors):
+    return vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-9)
+
+
+def _split(part):
+    return (part[:-2], part[-1]) if part[-2:] in words.SIDES else (part, "")
+
+
+def _rotation_vectors(body, rng):
+    """A rotation for each active joint; sides alike in two thirds of the samples."""
+    amount = rng.uniform(0.05, 0.3) if rng.rand() < 0.3 else rng.uniform(0.3, 1.6)
+    alike = rng.rand() < 0.65
+    curl = rng.randn(2) * 0.5 * min(amount, 1)
+    drawn, seen, vectors = {}, {}, np.zeros((len(body.active), 3), "f4")
+    for k, part in enumerate(body.active_part):
+        base, side = _split(part)
+        index = seen[part] = seen.get(part, -1) + 1
+        count = body.active_part.count(part) if part not in drawn else drawn[part]
+        drawn[part] = count
+        key = (base, index, "" if alike else side)
+        if key not in drawn:
+            drawn[key] = rng.randn(3) * ROTATION.get(base, 0.03) * amount / np.sqrt(min(count, 9))
+        vector = drawn[key]
+        if side == "R":  # a rotation vector in the mirror
+            vector = vector * (1, -1, -1)
+        if body.curl_axis[k].any():
+            vector = vector * 0.5 + body.curl_axis[k] * (-curl[0 if alike else 1] if side == "R" else curl[0])
+        vectors[k] = vector
+    return vectors
+
+
+def _lifted_arms(body, rng, matrices):
+    """Arms of people from raised to hanging: the first joint of each upper arm is rotated to one elevation."""
+    wanted, done = np.radians(rng.uniform(-85, 60 if rng.rand() < 0.2 else 15)), set()
+    for k, part in enumerate(body.active_part):
+        if part in ("fore_upper.L", "fore_upper.R") and part not in done:
+            done.add(part)
+            direction = body.direction[k]
+            now = np.arctan2(direction[1], abs(direction[0]) + 1e-6)
+            angle = (wanted - now) * (1 if part[-1] == "L" else -1)
+            matrices[k] = rotations(np.array([[0, 0, angle]]))[0] @ matrices[k]
+
+
+def _stretches(body, rng):
+    """group -> (along the bone, across it)."""
+    result = {}
+    for group in GROUPS:
+        spread = 0.22 if group in LOOSE_GROUPS else 0.14
+        result[group] = np.exp(rng.randn(2) * spread * rng.choice([0.3, 1.0]) + (0.08 if group == "head" else 0))
+    upright = body.plan == words.PLAN["upright"]
+    if rng.rand() < (0.4 if upright else 0.2):  # toys: large heads, short limbs
+        result["head"] = np.full(2, rng.uniform(1.2, 3.2 if upright else 2))
+        for group, shortest in (("hind", 0.4), ("fore", 0.5), ("trunk", 0.5)):
+            result[group] = np.array([rng.uniform(shortest, 1), rng.uniform(0.75, 1.5)])
+    return result
+
+
+def _pose(body, rng):
+    """Matrices (active, 3, 3) and offsets (active, 3): a point of joint k goes to matrices[k] @ point + offsets[k]."""
+    turn = rotations(_rotation_vectors(body, rng))
+    if body.plan == words.PLAN["upright"] and rng.rand() < 0.6:
+        _lifted_arms(body, rng, turn)
+    stretch = _stretches(body, rng)
+    base = [_split(part)[0] for part in body.active_part]
+    along, across = np.array([stretch[GROUP.get(b, "trunk")] for b in base], "f4").T
+    across = np.where(np.isin(base, UNIFORM_PARTS), along, across)
+    outer = body.direction[:, :, None] * body.direction[:, None]
+    scale = (across[:, None, None] * np.eye(3, dtype="f4") + (along - across)[:, None, None] * outer).astype("f4")
+    rotation, position = np.empty_like(turn), np.empty_like(body.active)
+    for k, parent in enumerate(body.active_parent):
+        if parent < 0:
+            rotation[k], position[k] = turn[k], body.active[k]
+        else:
+            rotation[k] = rotation[parent] @ turn[k]
+            position[k] = position[parent] + rotation[parent] @ (scale[parent] @ (body.active[k] - body.active[parent]))
+    matrices = rotation @ scale
+    return matrices, position - np.einsum("kab,kb->ka", matrices, body.active)
+
+
+def _posed(body, rng):
+    matrices, offsets = _pose(body, rng)
+    blended = (body.weights @ matrices.reshape(len(matrices), 9)).reshape(-1, 3, 3)
+    points = np.einsum("nab,nb->na", blended, body.points) + body.weights @ offsets
+    normals = unit(np.einsum("nab,nb->na", blended, body.normals))
+    move = lambda positions, of: np.einsum("nab,nb->na", matrices[of], positions) + offsets[of]
+    of, bone = body.of, body.bone
+    joints, ends = move(body.joints, of), move(body.bone_ends, of)
+    active = move(body.active, np.arange(len(matrices)))
+    roles = (1 - body.role_fraction) * active[body.role_first] + body.role_fraction * active[body.role_second]
+    return _Cloud(points, normals, body.pieces.copy(), body.part.copy(), joints[bone], ends[bone],
+                  np.ones(len(points), bool), body.flesh, roles, body.has.copy(), body.fingers.copy())
+
+
+def _lose_parts(cloud, body, rng):
+    """Props and optional parts go, with their roles."""
+    if rng.rand() < 0.25:
+        _keep_most(cloud, cloud.part != PROP)
+    if body.plan in (words.PLAN["upright"], words.PLAN["four"]) and rng.rand() < 0.08:
+        lost = OPTIONAL[rng.randint(len(OPTIONAL))]
+        names = [i for i, role in enumerate(words.ROLES) if role.startswith(lost)]
+        gone = [index for part, index in words.PART.items() if part.startswith(lost)]
+        if cloud.has[names].any() and _keep_most(cloud, ~np.isin(cloud.part, gone)):
+            cloud.has[names] = False
+
+
+def _keep_most(cloud, keep):
+    if keep.sum() < 1.1 * samples.TOKENS or keep.all():
+        return False
+    cloud.keep(keep)
+    return True
+
+
+def _thicken(cloud, rng):
+    """Fat, thin and swollen limbs: points go along their normals by a fraction of the flesh below them at rest."""
+    amount = rng.randn(len(words.PARTS)) * 0.15 + rng.randn() * 0.12
+    amount = (amount + amount[words.MIRROR_PART]) / 2
+    cloud.points = cloud.points + cloud.normals * (cloud.flesh * amount[cloud.part].clip(-0.5, 0.6))[:, None]
+
+
+def _bend(cloud, rng):
+    """A smooth quadratic map of space: bent, tapered and sheared bodies of the same plan; normals by its Jacobian."""
+    centre, scale = samples.frame_of(cloud.points)
+    tensor = rng.randn(3, 3, 3) * 0.05
+    tensor = (tensor + tensor.transpose(0, 2, 1)) / 2
+    if rng.rand() < 0.7:  # left and right stay alike
+        mirror = np.array([-1, 1, 1])
+        tensor[(mirror[:, None, None] * mirror[:, None] * mirror) < 0] = 0
+    relative = (cloud.points - centre) / scale
+    jacobian = np.eye(3) + 2 * np.einsum("abc,nc->nab", tensor, relative.clip(-2.5, 2.5))
+    if np.linalg.det(jacobian).min() < 0.3:
+        return
+    def function(positions):
+        r = (positions - centre) / scale
+        return positions + scale * np.einsum("abc,nb,nc->na", tensor, r, r)
+    cloud.map_positions(function)
+    cloud.normals = unit(np.linalg.solve(jacobian.transpose(0, 2, 1), cloud.normals[..., None])[..., 0])
+
+
+def _add(cloud, points, normals, rng, part=PROP, loose=0.8):
+    """Points of something that is no body; mostly a piece of its own."""
+    before, count = len(cloud.points), len(points)
+    if rng.rand() < loose:
+        cloud.pieces = cloud.pieces * (before / (before + count))
+        pieces = np.full(count, count / (before + count), "f4")
+    else:
+        pieces = np.full(count, cloud.pieces.max(), "f4")
+    join = lambda a, b: np.concatenate([a, b]).astype(a.dtype)
+    cloud.points, cloud.normals = join(cloud.points, points), join(cloud.normals, unit(normals))
+    cloud.pieces, cloud.part = join(cloud.pieces, pieces), join(cloud.part, np.full(count, part))
+    cloud.start, cloud.end = join(cloud.start, points), join(cloud.end, points)
+    cloud.known, cloud.flesh = join(cloud.known, np.zeros(count, bool)), join(cloud.flesh, np.zeros(count))
+
+
+def _of(cloud, *parts):
+    return np.flatnonzero(np.isin(cloud.part, [words.PART[part] for part in parts]))
+
+
+def _held(cloud, size, count, rng):
+    """A rod, blade or staff through a hand."""
+    hand = _of(cloud, "fore_end.L", "fore_end.R")
+    if not len(hand):
+        return
+    axis = unit(rng.randn(3))
+    angle = rng.rand(count) * 2 * np.pi
+    side = unit(np.cross(axis, rng.randn(3)))
+    ring = np.cos(angle)[:, None] * side + np.sin(angle)[:, None] * np.cross(axis, side)
+    flat = np.array([1, rng.uniform(0.1, 1), 1])
+    centre = cloud.points[rng.choice(hand)]
+    length, radius = size * rng.uniform(0.1, 0.5), size * rng.uniform(0.004, 0.03)
+    _add(cloud, centre + axis * (rng.uniform(-0.3, 1, count) * length)[:, None] + ring * radius * flat, ring, rng)
+
+
+def _hat(cloud, size, count, rng):
+    head = _of(cloud, "head")
+    if len(head) < 8:
+        return
+    points = cloud.points[head]
+    width = (points[:, [0, 2]].std() + 1e-6) * rng.uniform(1.2, 3)
+    centre = np.array([points[:, 0].mean(), np.quantile(points[:, 1], 0.8), points[:, 2].mean()])
+    height, angle = rng.rand(count), rng.rand(count) * 2 * np.pi
+    radius = width * (1 - height) ** rng.uniform(0.2, 1.5)
+    ring = np.stack([np.cos(angle), 0 * angle, np.sin(angle)], 1)
+    rise = np.outer(height, [0, width * rng.uniform(0.2, 2.5), 0])
+    _add(cloud, centre + ring * radius[:, None] + rise, ring + [0, 0.3, 0], rng)
+
+
+def _cape(cloud, size, count, rng):
+    trunk = _of(cloud, "trunk")
+    if len(trunk) < 8:
+        return
+    points = cloud.points[trunk]
+    top, low = np.quantile(points[:, 1], 0.95), cloud.points[:, 1].min()
+    width, down = points[:, 0].std() * rng.uniform(1.5, 3), rng.rand(count)
+    x = points[:, 0].mean() + width * rng.uniform(-1, 1, count) * (1 + 0.5 * down)
+    z = np.quantile(points[:, 2], 0.05) - size * (0.01 + down * rng.uniform(0, 0.12))
+    normals = np.tile([0, 0.1, -1.0], (count, 1)) * rng.choice([-1, 1], count)[:, None]
+    _add(cloud, np.stack([x, top - down * (top - low) * rng.uniform(0.5, 0.95), z], 1), normals, rng)
+
+
+def _robe(cloud, size, count, rng):
+    """A skirt or robe that hides the legs of people."""
+    trunk, legs = _of(cloud, "trunk"), _of(cloud, *[f"hind_{p}{s}" for p in ("upper", "lower") for s in words.SIDES])
+    if len(trunk) < 8 or len(legs) < 8:
+        return
+    leg_points = cloud.points[legs]
+    top, low = np.quantile(leg_points[:, 1], 0.95), np.quantile(leg_points[:, 1], rng.uniform(0, 0.5))
+    centre = leg_points[:, [0, 2]].mean(0)
+    reach = np.abs(leg_points[:, [0, 2]] - centre).max(0) * rng.uniform(0.9, 1.2) + 1e-6
+    down, angle = rng.rand(count), rng.rand(count) * 2 * np.pi
+    ring = np.stack([np.cos(angle), np.sin(angle)], 1)
+    flat = centre + ring * reach * (rng.uniform(0.5, 1) * (1 - down) + down)[:, None]
+    points = np.stack([flat[:, 0], top - down * (top - low), flat[:, 1]], 1)
+    if rng.rand() < 0.7:  # what is below it is not there
+        hidden = np.isin(np.arange(len(cloud.points)), legs) & (cloud.points[:, 1] > low)
+        _keep_most(cloud, ~hidden)
+    _add(cloud, points, np.stack([ring[:, 0], 0.2 + 0 * down, ring[:, 1]], 1), rng)
+
+
+def _pack(cloud, size, count, rng):
+    """A box at the back, the side or the chest: pack, quiver, shield, saddle."""
+    trunk = _of(cloud, "trunk")
+    if len(trunk) < 8:
+        return
+    at, outward = cloud.points[k := rng.choice(trunk)], cloud.normals[k]
+    half = size * rng.uniform(0.02, 0.12, 3)
+    points = rng.uniform(-1, 1, (count, 3))
+    face = rng.randint(3, size=count)
+    sign = rng.choice([-1.0, 1.0], count)
+    points[np.arange(count), face] = sign
+    normals = np.zeros_like(points)
+    normals[np.arange(count), face] = sign
+    turn = rotations(rng.randn(1, 3) * 0.4)[0]
+    _add(cloud, at + outward * half.min() + (points * half) @ turn.T, normals @ turn.T, rng)
+
+
+def _plinth(cloud, size, count, rng):
+    """A flat base below the body, or ground."""
+    low, middle = cloud.points.min(0), (cloud.points.max(0) + cloud.points.min(0)) / 2
+    reach = size * rng.uniform(0.1, 0.35)
+    radius, angle = reach * np.sqrt(rng.rand(count)), rng.rand(count) * 2 * np.pi
+    top = rng.rand(count) < 0.6
+    height = np.where(top, low[1], low[1] - size * rng.uniform(0.005, 0.05))
+    points = np.stack([middle[0] + radius * np.cos(angle), height, middle[2] + radius * np.sin(angle)], 1)
+    _add(cloud, points, np.where(top[:, None], [0, 1.0, 0], [0, -1.0, 0]), rng)
+
+
+def _debris(cloud, size, count, rng):
+    """Loose small balls around the body."""
+    low, high = cloud.points.min(0), cloud.points.max(0)
+    for _ in range(rng.randint(1, 5)):
+        directions = unit(rng.randn(max(count // 8, 3), 3))
+        centre = rng.uniform(low - 0.1 * size, high + 0.1 * size)
+        _add(cloud, centre + directions * size * rng.uniform(0.004, 0.03), directions, rng, loose=1.0)
+
+
+PROPS = ((_held, 5), (_hat, 4), (_cape, 2), (_robe, 3), (_pack, 3), (_plinth, 2), (_debris, 1))
+PROP_ODDS = np.array([odds for _, odds in PROPS]) / sum(odds for _, odds in PROPS)
+
+
+def _dress(cloud, body, rng):
+    size = np.linalg.norm(np.ptp(cloud.points, axis=0))
+    for _ in range(1 + (rng.rand() < 0.3)):
+        kind = PROPS[rng.choice(len(PROPS), p=PROP_ODDS)][0]
+        if kind is not _robe or body.plan == words.PLAN["upright"]:
+            kind(cloud, size, int(len(body.points) * rng.uniform(0.03, 0.15)), rng)
+
+
+def _damage(cloud, rng):
+    """Holes, noise of scans, normals that lie."""
+    if rng.rand() < 0.12:
+        centre, scale = samples.frame_of(cloud.points)
+        keep = np.ones(len(cloud.points), bool)
+        for _ in range(rng.randint(1, 5)):
+            hole = cloud.points[rng.randint(len(cloud.points))]
+            keep &= ((cloud.points - hole) ** 2).sum(1) > (scale * rng.uniform(0.05, 0.3)) ** 2
+        _keep_most(cloud, keep)
+    if rng.rand() < 0.1:
+        _, scale = samples.frame_of(cloud.points)
+        cloud.points = cloud.points + rng.randn(*cloud.points.shape) * scale * rng.uniform(0.002, 0.012)
+        cloud.normals = unit(cloud.normals + rng.randn(*cloud.normals.shape) * rng.uniform(0.05, 0.4))
+    if rng.rand() < 0.15:
+        cloud.pieces = np.ones_like(cloud.pieces)
+
+
+def _transform(cloud, matrix):
+    cloud.map_positions(lambda positions: positions @ matrix.T)
+    cloud.normals = unit(cloud.normals @ np.linalg.inv(matrix))
+
+
+def _mirror(cloud):
+    _transform(cloud, np.diag([-1.0, 1, 1]))
+    cloud.roles, cloud.has = cloud.roles[words.MIRROR_ROLE], cloud.has[words.MIRROR_ROLE]
+    cloud.part, cloud.fingers = words.MIRROR_PART[cloud.part], cloud.fingers[::-1]
+
+
+def _pins(has, y, rng):
+    """No pin in half of the samples, else one to five true joints, as exactly as a user drags them."""
+    roles, positions = np.full(MAX_PINS, -1), np.zeros((MAX_PINS, 3), "f4")
+    present = np.flatnonzero(has)
+    if rng.rand() < 0.5 and len(present):
+        chosen = rng.choice(present, min(rng.randint(1, MAX_PINS + 1), len(present)), replace=False)
+        roles[: len(chosen)] = chosen
+        positions[: len(chosen)] = y[chosen] + rng.randn(len(chosen), 3) * 0.01
+    return roles, positions
+
+
+def vary(body, rng, any_stance=False):
+    """A training sample; any_stance: in one of the 24 stances, as the stance network has to tell."""
+    cloud = _posed(body, rng)
+    _lose_parts(cloud, body, rng)
+    if rng.rand() < 0.4:
+        _thicken(cloud, rng)
+    if rng.rand() < 0.4:
+        _bend(cloud, rng)
+    if rng.rand() < 0.35:
+        _dress(cloud, body, rng)
+    _damage(cloud, rng)
+    _transform(cloud, np.diag(np.exp(rng.randn(3) * 0.1)))
+    if rng.rand() < 0.5:
+        _mirror(cloud)
+    tilt = rotations((rng.randn(3) * np.radians([5, 8, 4]))[None])[0].astype(float)
+    stance = words.UPRIGHT_STANCE
+    if any_stance:
+        stance = rng.randint(len(words.STANCES))
+        tilt = words.STANCES[stance].T @ tilt
+    _transform(cloud, tilt)
+    return _finish(cloud, body, stance, rng)
+
+
+def _finish(cloud, body, stance, rng):
+    points = cloud.points.astype("f4")
+    chosen, radii = samples.pool_tokens(points, cloud.normals)
+    inputs, centre, scale = samples.token_inputs(points[chosen], cloud.normals[chosen], radii, cloud.pieces[chosen])
+    y = ((cloud.roles - centre) / scale * cloud.has[:, None]).astype("f4")
+    bone = np.concatenate([cloud.start[chosen] - points[chosen], cloud.end[chosen] - points[chosen]], 1) / scale
+    pin_roles, pin_positions = _pins(cloud.has, y, rng)
+    return Sample(inputs, y, cloud.has.astype("f4"), cloud.part[chosen].astype("i8"), bone.astype("f4"),
+                  cloud.known[chosen].astype("f4"), body.plan, cloud.fingers.astype("i8"), pin_roles.astype("i8"),
+                  pin_positions, stance)
