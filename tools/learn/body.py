@@ -81,6 +81,13 @@ class Body:
         self.bone = joint[:, 0]
 
     @cached_property
+    def head_size(self):
+        """Diagonal of the head's box, of the diagonal of the body's."""
+        head = self.points[self.part == words.PART["head"]]
+        diagonal = lambda points: float(np.linalg.norm(np.ptp(points, axis=0)))
+        return diagonal(head) / diagonal(self.points) if len(head) else 0.0
+
+    @cached_property
     def flesh(self):
         """Radius of the largest ball inside at each point of the pool, roughly."""
         return samples.inner_radii(self.points, self.normals, self.points[::3])

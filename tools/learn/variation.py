@@ -23,6 +23,8 @@ GROUP = {"neck": "neck", "head": "head", "tail": "tail", "fore_upper": "fore", "
 GROUPS = sorted(set(GROUP.values()) | {"trunk"})
 LOOSE_GROUPS = ("head", "ear", "tail", "fin", "wing", "hand")  # whose sizes differ more between bodies
 UNIFORM_PARTS = ("head", "fore_end", "hind_end", "ear")  # stretched alike in all directions
+MAX_HEAD = 0.6  # largest size of a stretched head, of the diagonal of the body's box
+MAX_PROP = 0.75  # the same of a prop
 OPTIONAL = ("ear", "tail")  # parts that a body may lose and still be of its plan
 PROP = words.PART["prop"]
 
@@ -128,7 +130,8 @@ def _stretches(body, rng):
         result[group] = np.exp(rng.randn(2) * spread * rng.choice([0.3, 1.0]) + (0.08 if group == "head" else 0))
     upright = body.plan == words.PLAN["upright"]
     if rng.rand() < (0.4 if upright else 0.2):  # toys: large heads, short limbs
-        result["head"] = np.full(2, rng.uniform(1.2, 3.2 if upright else 2))
+        largest = max(MAX_HEAD / max(body.head_size, 0.05), 1)
+        result["head"] = np.full(2, min(rng.uniform(1.2, 3.2 if upright else 2), largest))
         for group, shortest in (("hind", 0.4), ("fore", 0.5), ("trunk", 0.5)):
             result[group] = np.array([rng.uniform(shortest, 1), rng.uniform(0.75, 1.5)])
     return result
@@ -218,6 +221,8 @@ def _bend(cloud, rng):
 def _add(cloud, points, normals, rng, part=PROP, loose=0.8):
     """Points of something that is no body; mostly a piece of its own."""
     before, count = len(cloud.points), len(points)
+    if np.linalg.norm(np.ptp(points, axis=0)) > MAX_PROP * np.linalg.norm(np.ptp(cloud.points, axis=0)):
+        return
     if rng.rand() < loose:
         cloud.pieces = cloud.pieces * (before / (before + count))
         pieces = np.full(count, count / (before + count), "f4")
