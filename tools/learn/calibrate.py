@@ -26,7 +26,7 @@ def calibrate(rows):
     ratios = np.concatenate([np.array(row["error"]) / np.maximum(row["expected"], 1e-6) for row in rows])
     sure = np.array([confidence(row, temperature).max() for row in rows])
     right = np.array([kind_right(row) for row in rows])
-    wrong = [1 - right[sure >= t].mean() if (sure >= t).any() else 0 for t in THRESHOLDS]
+    wrong = [1 - right[sure >= t].mean() if (sure >= t).any() else 1 for t in THRESHOLDS]
     threshold = next((t for t, fraction in zip(THRESHOLDS, wrong) if fraction <= ALLOWED_WRONG), THRESHOLDS[-1])
     return {
         "plan_temperature": round(temperature, 4), "error_factor": round(float(ratios.mean()), 4),
