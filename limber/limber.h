@@ -27,6 +27,7 @@
 #include "limber/actions/rig/auto_rig.h"
 #include "limber/deform/deformer.h"
 #include "limber/geometry/mesh/prepare.h"
+#include "limber/reading/shape_weights.h"
 #include "limber/rigging/auto_rigger.h"
 #include "limber/rigging/weights/weight_method.h"
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::string_view kOptions[] = {"handles", "max-influences", "rigger", "template", "skinning",
                                          "pieces",  "existing-rig",   "up",     "front",    "pins",
-                                         "upright", "chains",         "bones",  "target"};
+                                         "upright", "chains",         "bones",  "target",   "reading"};
 
 // "max-influences" or "existing-rig: replace".
 struct WrittenOption {

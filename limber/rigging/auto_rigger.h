@@ -24,6 +24,7 @@ struct JointPin {
 class CurveSkeleton;
 class SphereMesh;
 struct MeasuredModel;
+struct ReadingWeights;
 
 // What a rigger found out about a mesh and can use again for the same mesh: filled by one call, read by the next.
 struct RigMemory {
@@ -45,6 +46,7 @@ struct RigOptions {
   std::optional<Skeleton> templateSkeleton = {};  // a user's own, instead of that
   std::optional<Vec3> up = {}, front = {};        // along an axis of the mesh's space; none: found
   std::vector<JointPin> pins = {};
+  std::shared_ptr<const ReadingWeights> reading = {};  // networks that read the shape; null: shapeWeights()
 };
 
 // The confidence from which on a template is taken for what the model is; below it is a guess.

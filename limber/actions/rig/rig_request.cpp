@@ -13,6 +13,7 @@
 #include "limber/actions/rig/template_file.h"
 #include "limber/document/gltf/json_access.h"
 #include "limber/document/gltf/json_text.h"
+#include "limber/reading/shape_weights.h"
 #include "limber/rigging/template_rigger.h"
 #include "limber/rigging/weights/weight_steps.h"
 
@@ -68,7 +69,8 @@ void checkTogether(const RigRequest& request, const AutoRigOptions& options) {
                  {"up", request.up.has_value()},
                  {"front", request.front.has_value()},
                  {"upright", request.upright},
-                 {"chains", request.chains}},
+                 {"chains", request.chains},
+                 {"reading", request.reading.has_value()}},
                 "is of no use where the model's own skeleton is kept", "leave `existing-rig: keep-skeleton` out");
   }
   if (request.chosenTemplate && !isTemplate) {
@@ -80,7 +82,8 @@ void checkTogether(const RigRequest& request, const AutoRigOptions& options) {
                {"up", request.up.has_value()},
                {"front", request.front.has_value()},
                {"upright", request.upright},
-               {"chains", request.chains}},
+               {"chains", request.chains},
+               {"reading", request.reading.has_value()}},
               "takes a template to fit", "name one: `template: auto`");
 }
 
@@ -214,6 +217,7 @@ AutoRigOptions optionsOf(const RigRequest& request) {
     options.rig.templateSkeleton = skeleton;
     if (!skeleton) findNamed("template", [&] { checkTemplateName(request.chosenTemplate->name); });
   }
+  if (request.reading) options.rig.reading = readShapeWeights(*request.reading);
   return options;
 }
 

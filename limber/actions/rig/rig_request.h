@@ -2,6 +2,7 @@
 // their defaults and their ranges are defined here alone.
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -28,6 +29,7 @@ struct RigRequest {
   std::optional<std::string> up, front;                 // +x, -x, x, ...; none: found
   std::vector<JointPin> pins;                           // in world space, metres
   bool upright = false, chains = false;
+  std::optional<std::filesystem::path> reading;  // a file of networks that read shapes; none: those of limber
   std::string target = "gltf";  // a name of engineTargets(): what the caller makes of the rigged model (toTarget)
 };
 
@@ -38,7 +40,8 @@ RigRequest rigRequestFromJson(std::string_view json);
 
 // Throws Error kBadArgument for what is out of range, does not go together or is called by no name that there is. Where
 // one option is to blame its name is where(), between backticks (spellOptions). A rigger and a method of skinning may
-// be a program of the user's: autoRig() looks for their names.
+// be a program of the user's: autoRig() looks for their names. Networks are read once all else is valid; throws as
+// readShapeWeights does.
 AutoRigOptions optionsOf(const RigRequest& request);
 
 // The model that was rigged, as the request's target expects it. What it cannot give goes to the report's warnings.

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "limber/core/error.h"
+#include "source_folder.h"
 
 namespace limber {
 
@@ -157,6 +158,25 @@ TEST(RigRequest, ReadsATemplateOnceAllElseIsRight) {
   EXPECT_EQ(own.rig.templateName, "own.json");
   ASSERT_TRUE(own.rig.templateSkeleton);
   EXPECT_EQ(own.rig.templateSkeleton->joints[0].name, "root");
+}
+
+TEST(RigRequest, ReadsNetworksOnceAllElseIsRight) {
+  RigRequest request;
+  request.reading = "nowhere.lrd";
+  EXPECT_EQ(rigRefusal(request).remedy(), "name one: `template: auto`");
+  request.chosenTemplate = ChosenTemplate{"humanoid"};
+  EXPECT_THAT(rigRefusal(request).where(), HasSubstr("nowhere.lrd"));
+  request.up = "+w";
+  EXPECT_EQ(rigRefusal(request).where(), "`up`");
+  request.up.reset();
+  request.reading = testing::sourceFolder() / "limber/reading/data/shapes.lrd";
+  EXPECT_TRUE(optionsOf(request).rig.reading);
+  request.reading.reset();
+  EXPECT_FALSE(optionsOf(request).rig.reading);
+  request.chosenTemplate.reset();
+  request.existingRig = "keep-skeleton";
+  request.reading = "nowhere.lrd";
+  EXPECT_EQ(rigRefusal(request).where(), "`reading`");
 }
 
 TEST(RigRequest, RefusesWhatDoesNotGoTogether) {
