@@ -59,6 +59,7 @@ TEST_F(Cli, WrongUsageIsOneLineAndCodeTwo) {
                                              {"rig", "a.glb", "-o", "b.glb", "--template", "nobody"},
                                              {"rig", "a.glb", "-o", "b.glb", "--template", "no.bvh", "--handles", "5"},
                                              {"rig", "a.glb", "-o", "b.glb", "--pieces", "nobody"},
+                                             {"rig", "a.glb", "-o", "b.glb", "--reading", "own.lrd"},
                                              {"retarget", "a.glb", "b.bvh", "-o", "c.glb", "--save-map", "b.bvh"},
                                              {"retarget", "a.glb", "b.bvh", "-o", "c.glb", "--save-map", "./a.glb"},
                                              {"retarget", "a.glb", "b.bvh", "-o", "c.glb", "--reach", "nan"},
@@ -82,10 +83,24 @@ TEST_F(Cli, OptionsAreToldByTheirNamesHere) {
   EXPECT_THAT(run({"info", "`up`.glb"}).error, StartsWith("limber: `up`.glb: "));  // a file, no option
 }
 
+TEST_F(Cli, BadNetworksAreRefusedByTheirFile) {
+  makeRobot();
+  put("text.lrd", "no networks");
+  put("cut.lrd", "LRD1");
+  for (const auto& [file, message] : {std::pair("missing.lrd", "cannot be opened"),
+                                      std::pair("text.lrd", "weights of a reading"),
+                                      std::pair("cut.lrd", "weights of a reading")}) {
+    const Result refused = run({"rig", "robot.glb", "-o", "b.glb", "--template", "humanoid", "--reading", file});
+    expectOneLine(refused, 1);
+    EXPECT_THAT(refused.error, AllOf(StartsWith("limber: " + std::string(file)), HasSubstr(message)));
+  }
+  EXPECT_FALSE(fs::exists(folder_ / "b.glb"));
+}
+
 TEST_F(Cli, ValuesOfRigAreNeverEmpty) {
   makeRobot();
   for (const char* option : {"--handles", "--max-influences", "--rigger", "--template", "--pin", "--up", "--front",
-                             "--skinning", "--pieces", "--json", "--from-animation"}) {
+                             "--reading", "--skinning", "--pieces", "--json", "--from-animation"}) {
     const Result refused = run({"rig", "robot.glb", "-o", "b.glb", option, ""});
     expectOneLine(refused, 2);
     EXPECT_THAT(refused.error, AllOf(StartsWith("limber: " + std::string(option)), HasSubstr("is empty")));

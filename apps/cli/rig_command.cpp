@@ -30,7 +30,7 @@ struct RigArguments {
   std::string input, output, report;
   RigRequest request;
   AutoRigOptions rig;  // as the request says, once it is complete
-  std::optional<std::string> templateName;
+  std::optional<std::string> templateName, reading;
   std::vector<std::string> pins;
   bool replaceRig = false, keepSkeleton = false, strict = false;
   AnimationRigArguments animation;
@@ -185,6 +185,7 @@ void completeRequest(RigArguments& options) {
   RigRequest& request = options.request;
   if (options.replaceRig) request.existingRig = "replace";
   if (options.keepSkeleton) request.existingRig = "keep-skeleton";
+  request.reading = options.reading;
   for (const std::string& pin : options.pins) request.pins.push_back(parsePin(pin));
   request.target = options.target.target;
   try {
@@ -200,7 +201,8 @@ void run(RigArguments options) {
   checkOutput(options.output, modelExtensions());
   if (options.animation.frames.empty()) {
     if (options.input.empty()) throw CLI::RequiredError("IN");
-    checkBeside("--json", options.report, {options.input, options.output, options.templateName.value_or("")});
+    checkBeside("--json", options.report,
+                {options.input, options.output, options.templateName.value_or(""), options.reading.value_or("")});
   }
   completeRequest(options);
   if (!options.animation.frames.empty()) {
@@ -320,6 +322,10 @@ void addRigCommand(CLI::App& program) {
                     "turn a model that surely stands along another axis to stand along +Y");
   command->add_flag("--chains", request.chains,
                     "give capes, scarves, braids and tails joints that swing (VRMC_springBone)");
+  command
+      ->add_option("--reading", options->reading,
+                   "networks of your own that read the shape, for a template: a file of ./dev learn export")
+      ->type_name("FILE");
   command->add_option("--skinning", request.skinning, "how weights are made, see below")
       ->type_name("NAME")
       ->capture_default_str();
@@ -329,7 +335,7 @@ void addRigCommand(CLI::App& program) {
   options->target.addTo(*command);
   CLI::Option* animation = addAnimationRigOptions(*command, options->animation);
   for (const char* other : {"IN", "--handles", "--rigger", "--template", "--pin", "--up", "--front", "--upright",
-                            "--chains", "--skinning", "--pieces"}) {
+                            "--chains", "--reading", "--skinning", "--pieces"}) {
     animation->excludes(command->get_option(other));
   }
   CLI::Option* replace = command->add_flag("--replace-rig", options->replaceRig,

@@ -398,6 +398,7 @@ pins            where joints of a template must be: {"leftHand": (x, y, z)}, met
 up, front       how the model stands, for a template: "+x", "-x", "+y", ...; None: found
 upright         turn a model that surely stands along another axis to stand along +Y
 chains          give capes, scarves, braids and tails joints that swing (VRMC_springBone)
+reading         networks of your own that read the shape, for a template: the path of a file of ./dev learn export
 target          joints' names, root and axes as another program expects them: a name of limber.targets()
 progress        called as progress(stage, fraction) a few times a second; what it raises stops the work
 Ctrl-C stops it. Where it does not end well, the model is as it was.)";
@@ -469,7 +470,8 @@ PYBIND11_MODULE(_limber, module) {
              const std::optional<std::filesystem::path>& templateName, const std::string& skinning,
              const std::string& pieces, std::optional<Index> handles, Index maxInfluences, const std::string& existing,
              const std::map<std::string, Doubles>& pins, const std::optional<std::string>& up,
-             const std::optional<std::string>& front, bool upright, bool chains, const std::string& target,
+             const std::optional<std::string>& front, bool upright, bool chains,
+             const std::optional<std::filesystem::path>& reading, const std::string& target,
              const py::object& progress) {
             RigRequest request;
             request.rigger = rigger;
@@ -483,6 +485,7 @@ PYBIND11_MODULE(_limber, module) {
             request.front = front;
             request.upright = upright;
             request.chains = chains;
+            request.reading = reading;
             request.target = target;
             return model.rig(request, optionsFrom(request, templateName), progress);
           },
@@ -491,7 +494,8 @@ PYBIND11_MODULE(_limber, module) {
           py::arg("handles") = py::none(), py::arg("max_influences") = RigRequest().maxInfluences,
           py::arg("existing_rig") = RigRequest().existingRig, py::arg("pins") = py::dict(), py::arg("up") = py::none(),
           py::arg("front") = py::none(), py::arg("upright") = false, py::arg("chains") = false,
-          py::arg("target") = RigRequest().target, py::arg("progress") = py::none(), kRigHelp)
+          py::arg("reading") = py::none(), py::arg("target") = RigRequest().target, py::arg("progress") = py::none(),
+          kRigHelp)
       .def("attach_rig", &Model::attach, py::arg("names"), py::arg("parents"), py::arg("positions"), py::arg("joints"),
            py::arg("weights"),
            "A rig of your own: J names, (J,) parents with -1 for a root, (J, 3) places in metres; (V, K) joints and "

@@ -185,6 +185,7 @@ class Rigging(InFolder):
                       dict(template="quadruped", handles=3), dict(template="quadruped", rigger="prop"), dict(existing_rig="keep-skeleton", handles=3),
                       dict(template="quadruped", pins={"head": (0, 1)}), dict(template="quadruped", up="+w"), dict(template="quadruped", up="+y", front="y"),
                       dict(chains=True), dict(pieces="x"), dict(template=self.path("nothing.bvh")),
+                      dict(reading=self.path("nothing.lrd")), dict(template="quadruped", reading=self.path("nothing.lrd")),
                       dict(template=""), dict(rigger=""), dict(template="quadruped", up=""), dict(template="quadruped", front="")]:
             with self.assertRaises(limber.Error):
                 limber.sample("quadruped").rig(**wrong)
@@ -203,6 +204,11 @@ class Rigging(InFolder):
         with self.assertRaises(limber.Error) as caught:  # before its file is read
             limber.sample("quadruped").rig(template=self.path("nothing.bvh"), max_influences=9)
         self.assertEqual(caught.exception.where, "max_influences")
+        self.path("broken.lrd").write_bytes(b"LRD1")
+        with self.assertRaises(limber.Error) as caught:
+            limber.sample("quadruped").rig(template="quadruped", reading=self.path("broken.lrd"))
+        self.assertEqual(caught.exception.code, "bad-data")
+        self.assertIn("broken.lrd", caught.exception.where)
         model = limber.sample("quadruped")
         model.rig(handles=5)
         with self.assertRaises(limber.Error) as caught:
