@@ -81,7 +81,8 @@ function native(result, name) {
 /** The same of the engine: what names a file is given its bytes. */
 async function webAssembly(folder) {
   const { loadLimber } = await import(pathToFileURL(join(folder, 'limber.mjs')));
-  const engine = await loadLimber(readFileSync(join(folder, 'limber_engine.wasm')));
+  const shapes = new URL('../limber/reading/data/shapes.lrd', import.meta.url);
+  const engine = await loadLimber(readFileSync(join(folder, 'limber_engine.wasm')), { shapeWeights: () => readFileSync(shapes) });
   const checked = (given) => {
     if (!given.ok) throw new Error(given.error.message);
     return given;

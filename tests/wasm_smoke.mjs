@@ -14,9 +14,12 @@ const [wasmFolder, program, model, output] = process.argv.slice(2).map((path) =>
 mkdirSync(output, { recursive: true });
 const { loadLimber } = await import(pathToFileURL(join(wasmFolder, 'limber.mjs')));
 const part = (name) => readFileSync(join(wasmFolder, `limber_engine${name}.wasm`));
-let restAsked = 0;
+const shapes = readFileSync(new URL('../limber/reading/data/shapes.lrd', import.meta.url));
+let restAsked = 0, shapesAsked = 0;
 // In two parts, as the page has it.
-const limber = await loadLimber(part('_first'), { rest: () => { ++restAsked; return part('_rest'); } });
+const limber = await loadLimber(part('_first'), {
+  rest: () => { ++restAsked; return part('_rest'); }, shapeWeights: () => { ++shapesAsked; return shapes; },
+});
 const bytes = new Uint8Array(readFileSync(model));
 
 function nativeRig(handles) {
@@ -37,6 +40,7 @@ for (const handles of [6, 20, 50]) {
     assert.ok([handles, handles + 1].includes(joints), `${joints} joints`);
     assert.equal(result.report.methods.rigger, 'sphere-mesh');
     assert.deepEqual(Buffer.compare(result.glb, nativeRig(handles)), 0, 'the bytes differ');
+    assert.equal(shapesAsked, 0);
   };
 }
 cases['a person in mid-stride, whose template is bent: the native program\'s bytes'] = () => {
@@ -50,6 +54,21 @@ cases['a person in mid-stride, whose template is bent: the native program\'s byt
   const result = limber.rig(new Uint8Array(readFileSync(at('stride.glb'))), 'stride.glb', { rigger: 'template' });
   assert.ok(result.ok, result.error?.message);
   assert.equal(Buffer.compare(result.glb, readFileSync(at('stride_native.glb'))), 0, 'the bytes differ');
+  assert.ok(limber.rig(bytes, 'model.glb', { template: 'auto' }).ok);
+  assert.equal(shapesAsked, 1);
+};
+cases['a template without the networks that read shapes is an error value, until they are given'] = async () => {
+  const bare = await loadLimber(part('')), options = { template: 'humanoid' };
+  const { ok, error } = bare.rig(bytes, 'model.glb', options);
+  assert.deepEqual([ok, error.code], [false, 'unsupported']);
+  assert.match(error.remedy, /setShapeWeights/);
+  const cut = bare.setShapeWeights(shapes.subarray(0, 1000), 'cut.lrd');
+  assert.deepEqual([cut.ok, cut.error.code], [false, 'bad-data']);
+  assert.match(cut.error.where, /^cut\.lrd/);
+  assert.ok(bare.setShapeWeights(shapes).ok && bare.rig(bytes, 'model.glb', options).ok);
+  const offline = new Error('offline'), cutOff = await loadLimber(part(''), { shapeWeights: () => { throw offline; } });
+  assert.throws(() => cutOff.rig(bytes, 'model.glb', options), (thrown) => thrown === offline);
+  assert.ok(cutOff.rig(bytes, 'model.glb', { handles: 6 }).ok);
 };
 cases['the whole engine: the bytes of the one in two parts, whose rest was asked for once'] = async () => {
   const whole = await loadLimber(part('')), options = { handles: 12 };

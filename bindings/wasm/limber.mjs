@@ -123,15 +123,17 @@ import createEngine from './limber_engine.mjs';
 /**
  * @param {BufferSource | WebAssembly.Module} wasm limber_engine.wasm, or its first part, as its content or compiled
  * @param {{ onProgress?: (stage: string, fraction: number) => void, codecs?: Codecs, rest?: () => BufferSource | WebAssembly.Module,
- *           onInstance?: (instance: WebAssembly.Instance) => void, optionNames?: 'javascript' | 'program' }} [given]
+ *           shapeWeights?: () => Uint8Array, onInstance?: (instance: WebAssembly.Instance) => void,
+ *           optionNames?: 'javascript' | 'program' }} [given]
  *   codecs may be put in later; rest: gives the other part of an engine in two (split_engine.mjs), asked once, by the first
- *   call that needs it; optionNames: how errors name options, existingRig: 'replace' or --replace-rig; onProgress: what it
- *   throws stops the call, and is thrown by it
+ *   call that needs it; shapeWeights: gives shapes.lrd, asked by the first call that fits a template; optionNames: how errors name
+ *   options, existingRig: 'replace' or --replace-rig; what onProgress and shapeWeights throw stops the call, and is thrown by it
  */
 export async function loadLimber(wasm, given = {}) {
-  const { rest, onInstance, optionNames, onProgress, ...settings } = given;
+  const { rest, onInstance, optionNames, onProgress, shapeWeights, ...settings } = given;
   const thrown = []; // by the listener, during the call that runs
   if (onProgress) settings.onProgress = listening(onProgress, thrown);
+  if (shapeWeights) settings.shapeWeights = giving(shapeWeights, thrown);
   const engine = await new Promise((resolve, reject) => {
     const instantiateWasm = (imports, done) => {
       instantiate(wasm, imports, rest).then((instance) => { onInstance?.(instance); done(instance); }).catch(reject);
@@ -149,6 +151,9 @@ export async function loadLimber(wasm, given = {}) {
       const result = call(engine, engine._limber_rig, [], file, name, ...asked.inputs);
       return result.ok ? { ok: true, glb: result.bytes, report: result.account } : result;
     },
+    /** Networks of your own that read shapes (shapes.lrd), for all that is rigged from now on.
+     *  @type {(file: Uint8Array, name?: string) => { ok: true } | Failure} */
+    setShapeWeights: (file, name = 'shapes.lrd') => call(engine, engine._limber_set_shape_weights, [], file, name),
     /** The methods there are, by what they do. @type {() => Methods} */
     methods: () => call(engine, engine._limber_methods, []).account,
     /** Templates, how pieces that are joined to no other are bound, and other programs that saveModel knows.
@@ -184,6 +189,16 @@ const listening = (onProgress, thrown) => (stage, fraction) => {
   } catch (error) {
     thrown.push(error);
     return true;
+  }
+};
+
+/** The bytes that the engine asks for, or nothing. */
+const giving = (bytes, thrown) => () => {
+  try {
+    return bytesOf(bytes());
+  } catch (error) {
+    thrown.push(error);
+    return null;
   }
 };
 

@@ -18,6 +18,7 @@
 #include "limber/document/read.h"
 #include "limber/document/write.h"
 #include "limber/motion/retarget/retarget_method.h"
+#include "limber/reading/shape_weights.h"
 #include "limber/rigging/template_rigger.h"
 #include "limber/samples/motions/sample_motions.h"
 #include "limber/samples/motions/sample_poses.h"
@@ -64,6 +65,19 @@ LIMBER_EXPORT CallResult* limber_rig(const std::uint8_t* file, std::size_t fileS
     limber::AutoRigReport report = limber::autoRig(asset, rig, *progress);
     limber::finishRig(asset, request, report);
     return {true, limber::writeGlb(asset), limber::dumpReport(limber::toJson(report), -1)};
+  });
+}
+
+// The networks that read shapes, for all that is rigged from now on.
+LIMBER_EXPORT CallResult* limber_set_shape_weights(const std::uint8_t* file, std::size_t fileSize, const char* name,
+                                                   std::size_t nameSize) {
+  return guarded({name, nameSize}, [&]() -> CallResult {
+    try {
+      limber::setShapeWeights({file, fileSize});
+    } catch (const limber::Error& error) {
+      limber::throwWithin(error, {name, nameSize});
+    }
+    return {true, {}, "{}"};
   });
 }
 
