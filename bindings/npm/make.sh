@@ -10,7 +10,8 @@ rm -rf "$work"
 mkdir -p "$work/dist"
 cp -r package.json README.md bin ../../LICENSE "$work"
 ../../tools/notices.sh npm "" "$wasm" >"$work/NOTICES"
-cp -r index.mjs index.d.ts engine_code.mjs worker ../wasm/limber.mjs "$wasm"/limber_engine.mjs "$wasm"/limber_engine.wasm "$work/dist"
+cp -r index.mjs index.d.ts engine_code.mjs worker ../wasm/limber.mjs "$wasm"/limber_engine.mjs "$wasm"/limber_engine.wasm \
+  ../../limber/reading/data/shapes.lrd "$work/dist"
 "$limber" session types >"$work/dist/commands.d.ts"
 # The engine's types are in its comments; its commands are those of the C++.
 sed -i -E "s#@typedef \{\{ do: string, .*\}\} Command .*#@typedef {import('./commands.js').Command} Command#" "$work/dist/limber.mjs"

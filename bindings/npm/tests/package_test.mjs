@@ -5,7 +5,7 @@
 // Ends with "N passed, N failed".
 import assert from 'node:assert/strict';
 import { execFileSync, spawn, spawnSync } from 'node:child_process';
-import { existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdirSync, readdirSync, readFileSync, renameSync, rmSync, writeFileSync } from 'node:fs';
 import { dirname, join, resolve } from 'node:path';
 import { fileURLToPath, pathToFileURL } from 'node:url';
 import { launch, serve } from '../../../apps/studio/tests/page.mjs';
@@ -25,7 +25,7 @@ run(program, ['rig', 'model.glb', '--template', 'humanoid', '-o', 'person.glb', 
 const notOffered = {
   'from-animation': 'bones of a mesh that moves are found by the native program alone', clip: 'goes with --from-animation', bones: 'goes with --from-animation',
   fps: 'goes with --from-animation', 'adapter-folder': 'the engine starts no programs', adapter: 'the engine starts no programs', seed: 'goes with --adapter',
-  threads: 'the engine has one thread',
+  reading: 'networks of your own are given to the engine, setShapeWeights', threads: 'the engine has one thread',
 };
 /** Of a help text: the options by name, each with its words. */
 const optionsIn = (help) => new Map([...help.matchAll(/^  (?:-\w,)?--([a-z-]+)(.*(?:\n {4,}\S.*)*)/gm)].map(([, name, words]) => [name, words]));
@@ -44,14 +44,14 @@ function clipsIn(glb) {
     [`${nodes[target.node].name} ${target.path}`, [samplers[sampler].input, samplers[sampler].output].flatMap(numbers)])) }));
 }
 
-/** The page's title tells what it rigged, on its own thread and in a worker. */
+/** The page's title tells what it fitted a template to, on its own thread and in a worker. */
 async function expectRigged(address) {
   const browser = await launch();
   try {
     const page = await browser.newPage();
     await page.goto(address);
     await page.waitForFunction(() => document.title !== 'page', undefined, { timeout: 60000 });
-    const rigged = `rigged ${readFileSync(at('program.glb')).length}`;
+    const rigged = `rigged ${readFileSync(at('person.glb')).length}`;
     assert.equal(await page.title(), `${rigged}, ${rigged}`);
   } finally {
     await browser.close();
@@ -124,6 +124,26 @@ const cases = {
     const { load } = await import(pathToFileURL(at('node_modules/limber/dist/index.mjs')));
     const limber = await load({ wasmBinary: readFileSync(at('node_modules/limber/dist/limber_engine.wasm')) });
     assert.ok(limber.methods().rigger.some(({ name }) => name === 'template'));
+  },
+  async 'the networks that read shapes are read when a template is fitted'() {
+    const { load } = await import(pathToFileURL(at('node_modules/limber/dist/index.mjs')));
+    const shapes = at('node_modules/limber/dist/shapes.lrd'), bytes = readFileSync(shapes), model = readFileSync(at('model.glb')), options = { template: 'humanoid' };
+    assert.ok(bytes.length < 1.5e6, `${bytes.length} bytes`);
+    renameSync(shapes, at('shapes.lrd'));
+    try {
+      const limber = await load(), worker = await startWorker();
+      assert.ok(limber.rig(model, 'model.glb', { handles: 5 }).ok);
+      assert.throws(() => limber.rig(model, 'model.glb', options), /no such file.*shapes\.lrd/);
+      assert.match((await worker.rig(model, 'model.glb', options)).error.message, /no such file.*shapes\.lrd/);
+      const broken = limber.setShapeWeights(new Uint8Array([1, 2, 3]), 'broken.lrd');
+      assert.ok(!broken.ok && broken.error.where.startsWith('broken.lrd'));
+      assert.ok(limber.setShapeWeights(bytes).ok && (await worker.setShapeWeights(bytes)).ok);
+      assert.deepEqual(Buffer.from(limber.rig(model, 'model.glb', options).glb), readFileSync(at('person.glb')));
+      assert.ok((await worker.rig(model, 'model.glb', options)).ok);
+      worker.stop();
+    } finally {
+      renameSync(at('shapes.lrd'), shapes);
+    }
   },
   'the program of the package rigs, too'() {
     const done = npx('rig', 'model.glb', '-o', 'npx.glb', '--handles', '12', '--json', 'report.json');
@@ -329,8 +349,8 @@ const cases = {
       import { startWorker } from 'limber/worker';
       const model = new Uint8Array(await (await fetch('./model.glb')).arrayBuffer());
       const told = (result) => (result.ok ? 'rigged ' + result.glb.length : result.error.message);
-      const here = told((await load()).rig(model, 'model.glb', { handles: 12 }));
-      document.title = here + ', ' + told(await (await startWorker()).rig(model, 'model.glb', { handles: 12 }));`);
+      const options = { template: 'humanoid' }, here = told((await load()).rig(model, 'model.glb', options));
+      document.title = here + ', ' + told(await (await startWorker()).rig(model, 'model.glb', options));`);
     mkdirSync(at('page/public'), { recursive: true });
     writeFileSync(at('page/public/model.glb'), readFileSync(at('model.glb')));
     run(join(tools, '.bin/vite'), ['build', 'page', '--outDir', at('built'), '--base', './', '--logLevel', 'error']);

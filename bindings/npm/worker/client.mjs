@@ -3,7 +3,7 @@
 
 /** Calls whose answers have no room for an error: they are rejected with one. */
 const plainCalls = new Set(['methods', 'rigChoices', 'sampleMotions', 'samplePoses', 'createSession', 'forkSession', 'record', 'free']);
-const limberCalls = ['rig', 'methods', 'rigChoices', 'sampleMotions', 'samplePoses', 'checkPly', 'crowd'];
+const limberCalls = ['rig', 'setShapeWeights', 'methods', 'rigChoices', 'sampleMotions', 'samplePoses', 'checkPly', 'crowd'];
 const sessionCalls = ['open', 'add', 'places', 'memberModel', 'memberPosed', 'memberSkin', 'pickMember', 'addMotion', 'transferRig', 'sourceJoints', 'paths',
   'curve', 'run', 'pick', 'surface', 'weights', 'preview', 'parts', 'skin', 'handles', 'turns', 'model', 'deformation', 'posed', 'export', 'pose', 'record',
   'measures', 'saveModel', 'liveBegin', 'liveFrame', 'liveEnd', 'liveRecorded', 'free'];

@@ -1,4 +1,5 @@
 // The engine at the other end of client.mjs.
+import { shapesReader } from '../engine_code.mjs';
 import { loadLimber } from '../limber.mjs';
 
 /** What can be handed over without a copy: answers are the engine's own no longer. */
@@ -41,7 +42,7 @@ export function serve(post) {
   };
   return async ({ module, id, session, method, args }) => {
     if (module) {
-      limber = loadLimber(module, { onProgress });
+      limber = shapesReader().then((shapeWeights) => loadLimber(module, { onProgress, shapeWeights }));
       return;
     }
     try {
