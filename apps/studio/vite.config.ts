@@ -29,7 +29,7 @@ export const { ${exported.join(', ')} } = scope;`;
 // A folder of static files that any web host can serve, also below a path of its own.
 export default defineConfig({
   base: './',
-  resolve: { alias: { '@engine': at('../../build/wasm') } },
+  resolve: { alias: { '@engine': at('../../build/wasm'), '@shapes': at('../../limber/reading/data') } },
   build: {
     outDir: at('../../dist'), emptyOutDir: true, target: 'es2022', chunkSizeWarningLimit: 1000,
     rollupOptions: {

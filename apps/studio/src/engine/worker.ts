@@ -2,6 +2,7 @@
 import { loadLimber, type Codecs } from '@engine/limber.mjs';
 import firstUrl from '@engine/limber_engine_first.wasm.zst?url';
 import restUrl from '@engine/limber_engine_rest.wasm.zst?url';
+import shapesUrl from '@shapes/shapes.lrd?url';
 import { decompress, Decompress } from 'fzstd';
 import { Documents, EngineFailure } from './documents';
 import { bringCodecs } from './codecs';
@@ -81,6 +82,21 @@ async function enginePart(url: string): Promise<WebAssembly.Module> {
   return WebAssembly.compileStreaming(new Response(unpacked as ReadableStream<Uint8Array<ArrayBuffer>>, { headers: { 'content-type': 'application/wasm' } }));
 }
 
+/** Does not return before it is there: the engine cannot wait in the middle of a call. */
+function fetchNow(url: string): Uint8Array<ArrayBuffer> {
+  const request = new XMLHttpRequest();
+  request.open('GET', url, false);
+  request.responseType = 'arraybuffer';
+  try {
+    request.send();
+  } catch {
+    throw new Missing(null);
+  }
+  if (request.status !== 200) throw new Missing(request.status);
+  const bytes = new Uint8Array(request.response as ArrayBuffer);
+  return isPacked(bytes) ? decompress(bytes) as Uint8Array<ArrayBuffer> : bytes;
+}
+
 /** What the first pose needs nothing of: it comes when the first request has been answered, or at once where one needs it. */
 class RestOfEngine {
   private module: WebAssembly.Module | null = null;
@@ -92,23 +108,8 @@ class RestOfEngine {
     enginePart(restUrl).then((module) => { this.module ??= module; }, () => { /* asked for again when it is needed */ });
   }
 
-  /** The engine cannot wait in the middle of a call, so this does not return before it is there. */
   needed(): WebAssembly.Module {
-    return this.module ??= new WebAssembly.Module(this.fetchNow());
-  }
-
-  private fetchNow(): Uint8Array<ArrayBuffer> {
-    const request = new XMLHttpRequest();
-    request.open('GET', restUrl, false);
-    request.responseType = 'arraybuffer';
-    try {
-      request.send();
-    } catch {
-      throw new Missing(null);
-    }
-    if (request.status !== 200) throw new Missing(request.status);
-    const bytes = new Uint8Array(request.response as ArrayBuffer);
-    return isPacked(bytes) ? decompress(bytes) as Uint8Array<ArrayBuffer> : bytes;
+    return this.module ??= new WebAssembly.Module(fetchNow(restUrl));
   }
 }
 
@@ -125,7 +126,7 @@ function filesIn(request: Request): Uint8Array[] {
 async function start() {
   const codecs: Codecs = {}, rest = new RestOfEngine();
   const limber = await loadLimber(await enginePart(firstUrl), {
-    codecs, rest: () => rest.needed(), onProgress: (stage, fraction) => say({ kind: 'progress', stage, fraction }),
+    codecs, rest: () => rest.needed(), shapeWeights: () => fetchNow(shapesUrl), onProgress: (stage, fraction) => say({ kind: 'progress', stage, fraction }),
   });
   const documents = new Documents(limber);
   say({ kind: 'ready' });
