@@ -160,7 +160,7 @@ class _Run:
 def _describe(options, bodies, network):
     plans = Counter(words.PLANS[b.plan] for b in bodies)
     makers = Counter(b.maker for b in bodies)
-    licences = {b.maker: b.licence for b in bodies}
+    licences = {maker: "; ".join(sorted({b.licence for b in bodies if b.maker == maker})) for maker in makers}
     about = {"options": asdict(options), "bodies": len(bodies), "plans": plans, "makers": makers, "licences": licences,
              "numbers": sum(p.numel() for p in network.parameters())}
     with open(os.path.join(options.run, "run.json"), "w", encoding="utf-8") as file:
