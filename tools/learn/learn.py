@@ -4,10 +4,12 @@
     learn.py prepare              rigged files -> samples and labels
     learn.py make N               bodies made by code, and people by MakeHuman's data
     learn.py train KIND           KIND: reading or stance; --fold K leaves out a fold's makers; goes on where it stopped
-    learn.py evaluate             tables of all folds that were trained, on the makers that each left out
+    learn.py evaluate             reads what each trained run may be judged by; tables of the folds' left out makers
     learn.py calibrate            temperature, error factor and threshold from the folds
     learn.py export FILE          the weights file
     learn.py curve                figures over the number of bodies
+    learn.py document             the figures of docs/reading.md
+    learn.py pictures             bodies that were not trained on, with what is said of them: docs/images/reading_N.png
     learn.py folds                which makers each fold leaves out
 
 Every step can be run again; all seeds are fixed. What is made lies in --work, outside of the repository.
@@ -28,14 +30,21 @@ sys.path.insert(0, HERE)
 REPOSITORY = os.path.dirname(os.path.dirname(HERE))
 BESIDE = os.path.dirname(REPOSITORY)
 FOLDS = 4
+PAGE = os.path.join(REPOSITORY, "docs", "reading.md")
 
 
 def prepared(options):
     return os.path.join(options.work, "prepared")
 
 
-def run_folder(options, kind, fold=None):
-    return os.path.join(options.work, "runs", kind if fold is None else f"{kind}_fold{fold}")
+def run_folder(options, kind, fold=None, seed=1):
+    name = kind if fold is None else f"{kind}_fold{fold}"
+    return os.path.join(options.work, "runs", name if seed == 1 else f"{name}_seed{seed}")
+
+
+def runs_named(options, pattern):
+    """Trained runs by their folders' names."""
+    return sorted(filter(is_trained, glob.glob(os.path.join(glob.escape(options.work), "runs", pattern))))
 
 
 def is_trained(run):
@@ -80,7 +89,7 @@ def do_train(options):
     if options.fold is not None:
         leave_out += folds_of(options)[options.fold]
         print("leaves out", ", ".join(leave_out))
-    run = options.run or run_folder(options, options.kind, options.fold)
+    run = options.run or run_folder(options, options.kind, options.fold, options.seed)
     train(Options(
         kind=options.kind, data=prepared(options), made=os.path.join(options.work, "made"), run=run,
         leave_out=leave_out, samples=options.samples, batch=options.batch, rate=options.rate, threads=options.threads,
@@ -95,19 +104,28 @@ def trained_folds(options):
     return found
 
 
-def do_evaluate(options):
-    from evaluate import evaluate_run, load_rows, report
+def calibration_of(options):
+    path = os.path.join(options.work, "calibration.json")
+    if not os.path.exists(path):
+        return None
+    with open(path, encoding="utf-8") as file:
+        return json.load(file)
 
-    runs = options.run or [run_folder(options, "reading", fold) for fold in trained_folds(options)]
+
+def do_evaluate(options):
+    from evaluate import evaluate_run, load_rows
+    from tables import report
+
+    curves = runs_named(options, "reading_curve*")  # read by the step curve
+    runs = options.run or [run for run in runs_named(options, "reading*") if run not in curves]
     if not options.kept:
         for run in runs:
-            stance = run.replace("reading", "stance")
-            print("reading the makers that", os.path.basename(run), "left out", flush=True)
+            stance = os.path.join(os.path.dirname(run), os.path.basename(run).replace("reading", "stance"))
+            print("reading what", os.path.basename(run), "was not trained on", flush=True)
             has_stance = stance != run and is_trained(stance)
             evaluate_run(run, prepared(options), stance if has_stance else None, limit=options.limit or 0)
-    calibration = os.path.join(options.work, "calibration.json")
-    known = json.load(open(calibration, encoding="utf-8")) if os.path.exists(calibration) else None
-    text = report(load_rows(runs), known)
+    judged = options.run or [run_folder(options, "reading", fold) for fold in trained_folds(options)]
+    text = report(load_rows(judged), calibration_of(options))
     with open(os.path.join(options.work, "tables.md"), "w", encoding="utf-8") as file:
         file.write(text)
     print(text)
@@ -139,8 +157,7 @@ def do_export(options):
             runs[kind].update(samples=saved["step"] * saved["batch"], hours=round(saved["seconds"] / 3600, 2))
     if "reading" not in networks:
         raise SystemExit("no network is trained: learn.py train reading")
-    path = os.path.join(options.work, "calibration.json")
-    calibration = json.load(open(path, encoding="utf-8")) if os.path.exists(path) else None
+    calibration = calibration_of(options)
     if calibration is None:
         print("not calibrated (learn.py calibrate): confidence and errors are the network's own", file=sys.stderr)
     if "stance" not in networks:
@@ -160,7 +177,8 @@ def do_export(options):
 
 
 def do_curve(options):
-    from evaluate import evaluate_run, table
+    from evaluate import evaluate_run
+    from tables import by_group, table
     from train import Options, train
 
     leave_out = folds_of(options)[options.fold or 0]
@@ -170,7 +188,53 @@ def do_curve(options):
                       samples=options.samples, bodies=count, threads=options.threads, samplers=options.samplers,
                       seed=options.seed))
         rows = [row for row in evaluate_run(run, prepared(options)) if not row["report_only"]]
-        print(f"\n{count or 'all'} bodies\n" + table(rows, lambda row: row["group"], "group"), flush=True)
+        print(f"\n{count or 'all'} bodies\n" + table("group", by_group(rows)), flush=True)
+
+
+def do_document(options):
+    import torch
+    from document import SECTIONS, curve, has_rows, left_out, reported, rewrite, seeds, training
+
+    whole = run_folder(options, "reading")
+    folds = [run for run in (run_folder(options, "reading", fold) for fold in range(FOLDS)) if has_rows(run)]
+    judged = [run for run in runs_named(options, "reading*") if has_rows(run)]
+    curves = [run for run in judged if os.path.basename(run).startswith("reading_curve")]
+    sections = dict.fromkeys(SECTIONS)
+    if is_trained(whole):
+        sections["training"] = training(whole, torch.load(os.path.join(whole, "state.pt"), map_location="cpu"))
+    if folds:
+        sections |= left_out(folds, calibration_of(options) or {})
+    sections["reported"] = reported(folds, whole)
+    sections["seeds"] = seeds([run for run in judged if run not in curves])
+    sections["curve"] = curve(curves)
+    unchanged = rewrite(options.page, sections)
+    if unchanged:
+        print("left as they are, since their runs are not trained and read:", ", ".join(unchanged))
+
+
+def do_pictures(options):
+    from document import rewrite
+    from evaluate import about_run
+    from network import load_network
+    from pictures import Reading, choose, describe, sheets
+
+    runs = options.run or [run_folder(options, "reading")]
+    networks = {run: load_network(os.path.join(run, "state.pt"))[0] for run in runs}
+    temperature = (calibration_of(options) or {}).get("plan_temperature", 1.0)
+    readings = [Reading(body, networks[run], temperature) for body, run in choose(runs, prepared(options), options.count)]
+    if not readings:
+        raise SystemExit("there is no body that these runs were not trained on")
+    names = []
+    for index, sheet in enumerate(sheets(readings)):
+        names.append(f"reading_{index + 1}.png")
+        path = os.path.join(options.out, names[-1])
+        sheet.save(path, optimize=True)
+        print(path, os.path.getsize(path), "bytes")
+    seen = set.intersection(*(set(about_run(run)["makers"]) for run in runs))
+    text = describe(readings, seen, names)
+    print(text)
+    if options.page:
+        rewrite(options.page, {"pictures": text})
 
 
 def do_folds(options):
@@ -204,7 +268,7 @@ def arguments():
     step.add_argument("kind", choices=["reading", "stance"])
     step.add_argument("--fold", type=int, choices=range(FOLDS), help="leave out this fold's makers")
     step.add_argument("--leave-out", nargs="*", default=[], metavar="MAKER")
-    step.add_argument("--run", help="folder of the run (runs/KIND or runs/KIND_foldK of --work)")
+    step.add_argument("--run", help="folder of the run (runs/KIND, KIND_foldK, KIND_seedN of --work)")
     step.add_argument("--start", default="", help="a run whose weights to start from")
     step.add_argument("--bodies", type=int, default=0, help="only so many of the real bodies")
     step.add_argument("--minutes", type=float, default=0, help="stop after so many; the same command goes on")
@@ -215,7 +279,7 @@ def arguments():
     step.set_defaults(do=do_train)
 
     step = steps.add_parser("evaluate", help="tables of makers left out")
-    step.add_argument("--run", nargs="*", help="runs to judge (all folds that are trained)")
+    step.add_argument("--run", nargs="*", help="runs to judge (all that are trained; tables are of the folds)")
     step.add_argument("--kept", action="store_true", help="only print anew what was read last time")
     step.add_argument("--limit", type=int, help="at most so many bodies of each run")
     step.set_defaults(do=do_evaluate)
@@ -235,6 +299,17 @@ def arguments():
     step.add_argument("--fold", type=int, choices=range(FOLDS), default=0)
     _add_training(step, 20_000)
     step.set_defaults(do=do_curve)
+
+    step = steps.add_parser("document", help="make the figures of docs/reading.md anew")
+    step.add_argument("--page", default=PAGE, help="%(default)s")
+    step.set_defaults(do=do_document)
+
+    step = steps.add_parser("pictures", help="draw bodies that were not trained on, with what is said of them")
+    step.add_argument("count", type=int, nargs="?", default=60)
+    step.add_argument("--run", nargs="*", help="runs that read them (runs/reading); of folds the one without the maker")
+    step.add_argument("--out", default=os.path.join(REPOSITORY, "docs", "images"), help="folder (%(default)s)")
+    step.add_argument("--page", default=PAGE, help="page whose list is made anew (%(default)s); '' for none")
+    step.set_defaults(do=do_pictures)
 
     steps.add_parser("folds", help="which makers each fold leaves out").set_defaults(do=do_folds)
     return parser.parse_args()

@@ -40,11 +40,15 @@ class Source:
 
     @property
     def stem(self):
-        """What is left of the name without its maker: the same in two collections of one file."""
-        stem = os.path.splitext(os.path.basename(self.file))[0].lower()
-        for prefix in PREFIXES:
-            stem = stem.removeprefix(prefix + "_")
-        return re.sub(r"(_transformed|[^a-z0-9])", "", stem)
+        return stem_of(self.file)
+
+
+def stem_of(file):
+    """What is left of the name without its maker: the same in two collections of one file."""
+    stem = os.path.splitext(os.path.basename(file))[0].lower()
+    for prefix in PREFIXES:
+        stem = stem.removeprefix(prefix + "_")
+    return re.sub(r"(_transformed|[^a-z0-9])", "", stem)
 
 
 def maker_of(file):

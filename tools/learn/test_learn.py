@@ -1,19 +1,26 @@
 #!/usr/bin/python3
 """Quick checks of tools/learn, without models and without training: `tools/learn/test_learn.py`."""
+import json
 import os
+import re
 import sys
 import tempfile
 import unittest
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, HERE)
 import numpy as np
 import torch
 
+import document
+import evaluate
 import export
 import losses
+import pictures
 import reader
 import samples
+import tables
 import variation
 import vocabulary as words
 from body import Body
@@ -195,6 +202,138 @@ class Networks(unittest.TestCase):
         with torch.no_grad():
             expected = networks["stance"][0].eval()(inputs)
             torch.testing.assert_close(back["stance"](inputs), expected, atol=1e-2, rtol=1e-2)
+
+    def test_a_trained_run_is_measured(self):
+        torch.manual_seed(3)
+        row = evaluate.row_of(person_body(), make_network("reading")[0].eval(), make_network("stance")[0].eval())
+        self.assertEqual(sum(counts[0] for counts in row["parts"].values()),
+                         sum(counts[1] for counts in row["parts"].values()))
+        right = sum(counts[2] for counts in row["parts"].values()) / sum(counts[0] for counts in row["parts"].values())
+        self.assertAlmostEqual(row["part"], right)
+        json.dumps(row)
+
+
+def made_row(stem="cat", plan="four", said="four", maker="me", report_only=False, seen=False, j2j=2.0, sure=4.0):
+    logits = np.where(np.arange(len(words.PLANS)) == words.PLAN[said], sure, 0.0)
+    return {"stem": stem, "maker": maker, "report_only": report_only, "maker_seen": seen, "samples": 16,
+            "group": "four" if plan == "four" else "others", "plan": words.PLAN[plan], "plan_logits": logits.tolist(),
+            "j2j": j2j, "named": 3.0, "roles": {"head": 4.0, "fore_upper.L": 1.0, "fore_upper.R": 3.0}, "has_wrong": 0.1,
+            "part": 0.5, "parts": {"head": [10, 5, 4]}, "bone": 1.0, "expected": [1.0, 2.0], "error": [1.0, 4.0],
+            "fingers": [0, 5], "fingers_said": [0, 4], "finger_error": None, "pin": None,
+            "stance": {"right": 0.5, "up": 1.0}}
+
+
+def cells(table):
+    """Title of each line -> its other cells, without the two lines above."""
+    lines = [[cell.strip() for cell in line.strip("|").split("|")] for line in table.split("\n")]
+    return {line[0]: line[1:] for line in lines[2:]}
+
+
+class Tables(unittest.TestCase):
+    def test_figures_by_group(self):
+        rows = [made_row(), made_row("dog", said="bird", j2j=4.0), made_row("owl", "bird", "bird", j2j=None)]
+        found = cells(tables.table("group", tables.by_group(rows)))
+        self.assertEqual(found["four-legged"][:4], ["2", "50.0", "3.0", "3.0"])
+        self.assertEqual(found["all"][:3], ["3", "66.7", "3.0"])
+
+    def test_copies_and_further_runs_of_a_body_count_once(self):
+        self.assertEqual([row["j2j"] for row in tables.once([made_row(), made_row(j2j=9.0), made_row(maker="you")])], [2, 2])
+
+    def test_confidence_is_compared_with_what_is_right(self):
+        rows = [made_row(sure=9.0), made_row("dog", said="bird", sure=9.0), made_row("owl", said="bird", sure=0.1)]
+        self.assertEqual(cells(tables.kind_confidence(rows))["0.9 to 1"][1], "1 of 2 (50 %)")
+        self.assertEqual(tables.sure_and_wrong(rows), [False, True])
+        self.assertEqual(tables.sure_and_wrong(rows, temperature=100.0), [])
+        self.assertEqual(cells(tables.error_confidence(rows, 2.0))["fifth 5"], ["4.0", "4.0"])
+
+    def test_joints_parts_fingers(self):
+        rows = [made_row()]
+        self.assertEqual(cells(tables.joint_errors(rows)), {"`head`": ["4.0"], "`fore_upper`": ["2.0"]})
+        self.assertEqual(cells(tables.part_table(rows))["`head`"], ["10", "40", "80"])
+        fingers = cells(tables.other_figures(rows))
+        self.assertEqual(fingers["number of fingers right, hands that have some"], ["0 of 1 (0 %)"])
+        self.assertEqual(fingers["no fingers where there are none"], ["1 of 1 (100 %)"])
+
+    def test_seeds_are_compared_on_the_same_bodies(self):
+        found = cells(tables.seeds_table({1: [made_row(), made_row("dog", j2j=50.0)], 2: [made_row(j2j=3.0)]}))
+        self.assertEqual(found["J2J: four-legged"], ["2.0", "3.0", "2.5", "1.0"])
+
+    def test_report_has_no_figure_without_bodies(self):
+        text = tables.report([made_row(), made_row("owl", "bird", report_only=True, seen=True)])
+        self.assertIn("## Files to report only, makers seen in training", text)
+        self.assertNotIn("## Files to report only, makers left out", text)
+
+
+class Page(unittest.TestCase):
+    def run_with(self, folder, name, rows, makers, **options):
+        run = os.path.join(folder, name)
+        os.makedirs(run)
+        options = {"leave_out": [], "bodies": 0, "samples": 16, "start": "", "seed": 1, **options}
+        for file, content in (("rows.json", rows), ("run.json", {"options": options, "makers": makers})):
+            with open(os.path.join(run, file), "w", encoding="utf-8") as out:
+                json.dump(content, out)
+        return run
+
+    def test_marks_of_the_page_are_those_of_the_sections(self):
+        with open(os.path.join(HERE, "..", "..", "docs", "reading.md"), encoding="utf-8") as file:
+            text = file.read()
+        names = re.findall(rf"<!-- {document.MARK} \w+: ([\w-]+) -->", text)
+        self.assertEqual(names, re.findall(r"<!-- end of ([\w-]+) -->", text))
+        self.assertEqual(sorted(names), sorted(document.SECTIONS + ("pictures",)))
+
+    def test_a_section_is_rewritten_and_the_rest_stays(self):
+        with tempfile.TemporaryDirectory() as folder:
+            page = os.path.join(folder, "page.md")
+            begin, end = f"a\n\n<!-- {document.MARK} document: seeds -->\n", "<!-- end of seeds -->\n\nb\n"
+            with open(page, "w", encoding="utf-8") as file:
+                file.write(begin + "old\n" + end)
+            for text in ("one \\1", "two"):
+                self.assertEqual(document.rewrite(page, {"seeds": text, "curve": None}), ["curve"])
+                with open(page, encoding="utf-8") as file:
+                    self.assertEqual(file.read(), f"{begin}\n{text}\n\n{end}")
+            self.assertRaises(SystemExit, document.rewrite, page, {"other": "text"})
+
+    def test_figures_of_seen_makers_stand_beside_those_of_makers_left_out(self):
+        with tempfile.TemporaryDirectory() as folder:
+            seen, unseen = made_row(report_only=True, seen=True, j2j=1.0), made_row(report_only=True, j2j=5.0)
+            fold = self.run_with(folder, "reading_fold0", [unseen], {CODE: 3})
+            whole = self.run_with(folder, "reading", [seen], {"me": 2, CODE: 3})
+            line = cells(document.reported([fold], whole))["four-legged"]
+            self.assertEqual([line[2], line[6], line[10]], ["5.0", "-", "1.0"])
+            self.assertIsNone(document.reported([], whole))
+
+    def test_runs_that_differ_by_seed_or_bodies(self):
+        with tempfile.TemporaryDirectory() as folder:
+            rows = lambda j2j: [made_row(report_only=True, j2j=j2j)]
+            one = self.run_with(folder, "reading", rows(2.0), {"me": 9, CODE: 5})
+            two = self.run_with(folder, "reading_seed2", rows(4.0), {"me": 9, CODE: 5}, seed=2)
+            short = self.run_with(folder, "reading_short", rows(9.0), {"me": 9}, seed=3, samples=8)
+            self.assertEqual(cells(document.seeds([one, two, short]).split("\n\n")[1])["J2J: four-legged"],
+                             ["2.0", "4.0", "3.0", "2.0"])
+            self.assertIsNone(document.seeds([one, short]))
+            few = self.run_with(folder, "reading_curve4", rows(8.0), {"me": 4, CODE: 5})
+            self.assertEqual(list(cells(document.curve([one, few]).split("\n\n")[1])), ["4", "9"])
+
+
+class Pictures(unittest.TestCase):
+    def test_a_mistake_is_red(self):
+        torch.manual_seed(4)
+        body, network = person_body(), make_network("reading")[0].eval()
+        body.source = "wild/me/figure.glb"
+        reading = pictures.Reading(body, network)
+        reading.error[:], reading.wrong_joints, reading.wrong_plan = 0, np.zeros_like(reading.true), False
+        self.assertFalse(reading.is_wrong)
+        self.assertNotEqual(pictures.picture(reading).getpixel((0, 0)), pictures.RED)
+        reading.wrong_plan = True
+        self.assertEqual(pictures.picture(reading).getpixel((0, 0)), pictures.RED)
+        self.assertTrue(reading.captions()[1][1])
+        sheets = pictures.sheets([reading] * (pictures.COLUMNS * pictures.ROWS + 1))
+        self.assertEqual([sheet.size[1] // (pictures.VIEW + pictures.CAPTION) for sheet in sheets], [pictures.ROWS, 1])
+
+    def test_limbs_are_chains_from_the_body_outwards(self):
+        named = [[words.ROLES[role] for role in chain] for chain in pictures.chains()]
+        self.assertIn(["hind_upper.L", "hind_middle.L", "hind_hock.L", "hind_end.L", "hind_toes.L"], named)
+        self.assertIn(["trunk_0", "trunk_1", "trunk_2", "trunk_3", "neck", "head"], named)
 
 
 if __name__ == "__main__":
