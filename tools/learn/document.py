@@ -14,7 +14,6 @@ from makers import CODE, LICENCES
 MARK = "made by ./dev learn"
 SECTIONS = ("training", "groups", "kinds", "confidence", "joints", "parts", "fingers", "makers", "reported", "seeds",
             "curve")
-COMPARED = ("folds, maker left out", "all makers, maker unseen", "all makers, other files of the maker seen")
 
 
 def rewrite(page, sections):
@@ -76,11 +75,12 @@ def reported(folds, whole):
     if not folds or not has_rows(whole):
         return None
     pick = lambda rows, seen: tables.once([r for r in rows if r["report_only"] and r["maker_seen"] == seen])
-    several = pick(load_rows(folds), False), pick(load_rows([whole]), False), pick(load_rows([whole]), True)
-    names = [*(g for g in tables.GROUPS if any(row["group"] == g for rows in several for row in rows)), "all"]
-    return tables.side_by_side(COMPARED, {
-        tables.GROUPS.get(name, name): [[row for row in rows if name in (row["group"], "all")] for rows in several]
-        for name in names})
+    unseen, seen = (pick(load_rows([whole]), known) for known in (False, True))
+    bodies = {(row["maker"], row["stem"]) for row in seen}
+    again = [row for row in pick(load_rows(folds), False) if (row["maker"], row["stem"]) in bodies]
+    return tables.side_by_side({"all makers' network, which saw none of the maker": unseen,
+                                "the fold that left the maker out": again,
+                                "all makers' network, which saw other files of the maker": seen if again else []})
 
 
 def seeds(runs):
@@ -99,7 +99,7 @@ def seeds(runs):
                 title = "Without " + ", ".join(without)
             else:
                 rows = {seed: [row for row in some if row["report_only"]] for seed, some in rows.items()}
-                title = "All makers, on files to report only"
+                title = "All makers, on files to report only (of most makers it saw other files)"
             parts.append(f"{title}; {samples:,} samples:\n\n" + tables.seeds_table(rows))
     return "\n\n".join(parts) or None
 

@@ -19,7 +19,9 @@ def once(rows):
 
 
 def markdown(columns, lines):
-    aligned = ["---"] + ["---:"] * (len(columns) - 1)
+    """Columns of figures are aligned to the right."""
+    figures = [all(str(cell)[:1] in "-0123456789" for cell in column) for column in zip(*lines)] or [False] * len(columns)
+    aligned = ["---:" if right and k else "---" for k, right in enumerate(figures)]
     return "\n".join("| " + " | ".join(str(cell) for cell in line) + " |" for line in [columns, aligned, *lines])
 
 
@@ -153,12 +155,16 @@ def other_figures(rows):
         ["a limb was wrong, and is right as a whole after one pin", percent_of(_known(row["pin"] for row in rows))]])
 
 
-def side_by_side(columns, groups):
-    """Kind and joints of the same groups by several readings; groups: title -> one list of rows for each column."""
-    measures = ("kind right, %", "J2J", "named")
-    head = [""] + [f"{name}: {measure}" for name in columns for measure in ("files", *measures)]
-    return markdown(head, [[title] + [COLUMNS[m](rows) if rows else "-" for rows in several for m in ("files", *measures)]
-                           for title, several in groups.items()])
+def side_by_side(readings):
+    """Kind and joints of each group below each other; readings: title -> rows."""
+    shown = ("files", "kind right, %", "J2J", "named", "front and up right, %")
+    lines = []
+    for group in (*GROUPS, "all"):
+        for title, rows in readings.items():
+            some = [row for row in rows if group in (row["group"], "all")]
+            if some:
+                lines.append([GROUPS.get(group, group), title, *(COLUMNS[name](some) for name in shown)])
+    return markdown(["group", "read by", *shown], lines)
 
 
 def measures(rows):
