@@ -43,8 +43,8 @@ def training(run, saved):
     lines = [[maker, count, about["licences"].get(maker) or LICENCES.get(maker, "")]
              for maker, count in sorted(about["makers"].items(), key=lambda item: (-item[1], item[0]))]
     plans = ", ".join(f"{plan} {about['plans'].get(plan, 0)}" for plan in words.PLANS)
-    return (f"{about['bodies'] - made} rigged models of {len(lines) - bool(made)} makers and {made} bodies made by code; "
-            f"{saved['step'] * saved['batch']:,} samples, {saved['seconds'] / 3600:.1f} hours, seed "
+    return (f"{about['bodies'] - made} rigged models of {len(lines) - bool(made)} makers and {made} bodies made by "
+            f"code; {saved['step'] * saved['batch']:,} samples, {saved['seconds'] / 3600:.1f} hours, seed "
             f"{about['options']['seed']}, {about['numbers']:,} numbers. By kind: {plans}.\n\n"
             + tables.markdown(["maker", "files", "licence"], lines))
 
@@ -60,8 +60,8 @@ def left_out(folds, calibration):
     sure = tables.percent_of(tables.sure_and_wrong(bodies, temperature))
     makers = len({row["maker"] for row in bodies})
     return {
-        "groups": f"{len(folds)} networks of {samples} samples each; {len(bodies)} bodies of {makers} makers, each read by "
-                  "the network that did not see its maker.\n\n" + tables.table("group", tables.by_group(bodies)),
+        "groups": f"{len(folds)} networks of {samples} samples each; {len(bodies)} bodies of {makers} makers, each "
+                  "read by the network that did not see its maker.\n\n" + tables.table("group", tables.by_group(bodies)),
         "kinds": tables.table("kind", tables.by_plan(bodies)) + "\n\n" + tables.confusion(bodies),
         "confidence": f"{tables.kind_confidence(bodies, temperature)}\n\nWrong among those with a confidence of "
                       f"{tables.SURE} and more: {sure}.\n\n{tables.error_confidence(bodies, factor)}",

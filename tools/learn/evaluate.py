@@ -71,9 +71,9 @@ def row_of(body, network, stance_network=None):
     bone_error = (said["bone"][inside] + np.tile(body.all_points[chosen[inside]], 2) - bones).reshape(-1, 2, 3)
     present = np.flatnonzero(body.has)
     row = {
-        "name": body.name, "stem": stem_of(body.source), "maker": body.maker, "report_only": body.report_only, "group": group_of(body),
-        "plan": body.plan, "plan_logits": said["plan_logits"].tolist(), "j2j": percent(distance),
-        "named": percent(error[named].mean()) if named else None,
+        "name": body.name, "stem": stem_of(body.source), "maker": body.maker, "report_only": body.report_only,
+        "group": group_of(body), "plan": body.plan, "plan_logits": said["plan_logits"].tolist(),
+        "j2j": percent(distance), "named": percent(error[named].mean()) if named else None,
         "roles": {words.ROLES[k]: percent(error[k]) for k in present},
         "has_wrong": float(((said["has"] > 0.5) != body.has).mean()),
         "part": float((said["part"][inside].argmax(1) == body.part[chosen[inside]]).mean()),

@@ -221,7 +221,8 @@ def do_pictures(options):
     runs = options.run or [run_folder(options, "reading")]
     networks = {run: load_network(os.path.join(run, "state.pt"))[0] for run in runs}
     temperature = (calibration_of(options) or {}).get("plan_temperature", 1.0)
-    readings = [Reading(body, networks[run], temperature) for body, run in choose(runs, prepared(options), options.count)]
+    chosen = choose(runs, prepared(options), options.count)
+    readings = [Reading(body, networks[run], temperature) for body, run in chosen]
     if not readings:
         raise SystemExit("there is no body that these runs were not trained on")
     names = []

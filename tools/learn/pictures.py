@@ -161,6 +161,6 @@ def describe(readings, seen, names):
     if known:
         makers += f" Of {', '.join(known)} it saw other files."
     kinds, joints = (sum(map(wrong, readings)) for wrong in (lambda r: r.wrong_plan, lambda r: r.wrong_joints.any()))
-    return (f"{len(readings)} bodies; the kind is wrong of {kinds}, a joint is off by more than {100 * WRONG_JOINT:.0f} % of "
-            f"the longest side in {joints}. {makers}\n\n"
+    return (f"{len(readings)} bodies; the kind is wrong of {kinds}, a joint is off by more than "
+            f"{100 * WRONG_JOINT:.0f} % of the longest side in {joints}. {makers}\n\n"
             + "\n".join(f"![Front and side of bodies, with joints said and true](images/{name})" for name in names))

@@ -20,7 +20,8 @@ def once(rows):
 
 def markdown(columns, lines):
     """Columns of figures are aligned to the right."""
-    figures = [all(str(cell)[:1] in "-0123456789" for cell in column) for column in zip(*lines)] or [False] * len(columns)
+    is_figure = lambda cell: str(cell)[:1] in "-0123456789"
+    figures = [all(map(is_figure, column)) for column in zip(*lines)] or [False] * len(columns)
     aligned = ["---:" if right and k else "---" for k, right in enumerate(figures)]
     return "\n".join("| " + " | ".join(str(cell) for cell in line) + " |" for line in [columns, aligned, *lines])
 
@@ -81,7 +82,8 @@ COLUMNS = {  # of the main tables
 
 
 def table(title, groups):
-    return markdown([title, *COLUMNS], [[name, *(column(some) for column in COLUMNS.values())] for name, some in groups])
+    lines = [[name, *(column(some) for column in COLUMNS.values())] for name, some in groups]
+    return markdown([title, *COLUMNS], lines)
 
 
 def confusion(rows):
@@ -134,10 +136,12 @@ def part_table(rows):
         for part, counts in row["parts"].items():
             sums[part] = np.array(counts) + sums.get(part, 0)
     percent = lambda some, of: f"{100 * some / of:.0f}" if of else "-"
-    parts = [part for part in dict.fromkeys(p.removesuffix(".L").removesuffix(".R") for p in words.PARTS) if part in sums]
-    return markdown(["part", "points", "found, %", "right where said, %"],
-                    [[f"`{part}`", sums[part][0], percent(sums[part][2], sums[part][0]), percent(sums[part][2], sums[part][1])]
-                     for part in parts])
+    lines = []
+    for part in dict.fromkeys(name.removesuffix(".L").removesuffix(".R") for name in words.PARTS):
+        if part in sums:
+            true, said, both = sums[part]
+            lines.append([f"`{part}`", true, percent(both, true), percent(both, said)])
+    return markdown(["part", "points", "found, %", "right where said, %"], lines)
 
 
 def hands(rows, with_fingers):
@@ -148,7 +152,7 @@ def hands(rows, with_fingers):
 
 def other_figures(rows):
     """Fingers and pins."""
-    return markdown(["measure", "makers left out"], [
+    return markdown(["measure", "result"], [
         ["number of fingers right, hands that have some", percent_of(hands(rows, True))],
         ["no fingers where there are none", percent_of(hands(rows, False))],
         ["joints of fingers, mean error, % of the height", mean([row["finger_error"] for row in rows])],

@@ -217,8 +217,9 @@ def made_row(stem="cat", plan="four", said="four", maker="me", report_only=False
     logits = np.where(np.arange(len(words.PLANS)) == words.PLAN[said], sure, 0.0)
     return {"stem": stem, "maker": maker, "report_only": report_only, "maker_seen": seen, "samples": 16,
             "group": "four" if plan == "four" else "others", "plan": words.PLAN[plan], "plan_logits": logits.tolist(),
-            "j2j": j2j, "named": 3.0, "roles": {"head": 4.0, "fore_upper.L": 1.0, "fore_upper.R": 3.0}, "has_wrong": 0.1,
-            "part": 0.5, "parts": {"head": [10, 5, 4]}, "bone": 1.0, "expected": [1.0, 2.0], "error": [1.0, 4.0],
+            "j2j": j2j, "named": 3.0, "roles": {"head": 4.0, "fore_upper.L": 1.0, "fore_upper.R": 3.0},
+            "has_wrong": 0.1, "part": 0.5, "parts": {"head": [10, 5, 4]}, "bone": 1.0,
+            "expected": [1.0, 2.0], "error": [1.0, 4.0],
             "fingers": [0, 5], "fingers_said": [0, 4], "finger_error": None, "pin": None,
             "stance": {"right": 0.5, "up": 1.0}}
 
@@ -237,7 +238,8 @@ class Tables(unittest.TestCase):
         self.assertEqual(found["all"][:3], ["3", "66.7", "3.0"])
 
     def test_copies_and_further_runs_of_a_body_count_once(self):
-        self.assertEqual([row["j2j"] for row in tables.once([made_row(), made_row(j2j=9.0), made_row(maker="you")])], [2, 2])
+        rows = [made_row(), made_row(j2j=9.0), made_row(maker="you")]
+        self.assertEqual([row["j2j"] for row in tables.once(rows)], [2, 2])
 
     def test_confidence_is_compared_with_what_is_right(self):
         rows = [made_row(sure=9.0), made_row("dog", said="bird", sure=9.0), made_row("owl", said="bird", sure=0.1)]
