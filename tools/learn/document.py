@@ -61,7 +61,8 @@ def left_out(folds, calibration):
     makers = len({row["maker"] for row in bodies})
     return {
         "groups": f"{len(folds)} networks of {samples} samples each; {len(bodies)} bodies of {makers} makers, each "
-                  "read by the network that did not see its maker.\n\n" + tables.table("group", tables.by_group(bodies)),
+                  "read by the network that did not see its maker.\n\n"
+                  + tables.table("group", tables.by_group(bodies)),
         "kinds": tables.table("kind", tables.by_plan(bodies)) + "\n\n" + tables.confusion(bodies),
         "confidence": f"{tables.kind_confidence(bodies, temperature)}\n\nWrong among those with a confidence of "
                       f"{tables.SURE} and more: {sure}.\n\n{tables.error_confidence(bodies, factor)}",
