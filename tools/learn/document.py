@@ -84,6 +84,12 @@ def reported(folds, whole):
                                 "all makers' network, which saw other files of the maker": seen if again else []})
 
 
+def rows_left_out(run):
+    """Rows of the makers that a run was told to leave out: those that it only happened to draw nothing of are others."""
+    makers = about_run(run)["options"]["leave_out"]
+    return [row for row in load_rows([run]) if row["maker"] in makers and not row["report_only"]]
+
+
 def seeds(runs):
     """Runs that differ in nothing but their seeds; the bodies are those that all of them were judged by."""
     alike = {}
@@ -94,12 +100,11 @@ def seeds(runs):
     parts = []
     for (without, _, samples, _), by_seed in sorted(alike.items(), key=str):
         if len(by_seed) > 1:
-            rows = {seed: load_rows([run]) for seed, run in sorted(by_seed.items())}
             if without:
-                rows = {seed: [row for row in some if not row["maker_seen"]] for seed, some in rows.items()}
-                title = "Without " + ", ".join(without)
+                rows = {seed: rows_left_out(run) for seed, run in sorted(by_seed.items())}
+                title = f"Without {', '.join(without)}, and on these"
             else:
-                rows = {seed: [row for row in some if row["report_only"]] for seed, some in rows.items()}
+                rows = {seed: load_rows([run]) for seed, run in sorted(by_seed.items())}
                 title = "All makers, on files to report only (of most makers it saw other files)"
             parts.append(f"{title}; {samples:,} samples:\n\n" + tables.seeds_table(rows))
     return "\n\n".join(parts) or None
@@ -110,8 +115,8 @@ def curve(runs):
     found = []
     for run in runs:
         makers = Counter(about_run(run)["makers"])
-        rows = [row for row in load_rows([run]) if not row["maker_seen"]]
-        found.append((makers.total() - makers[CODE], about_run(run)["options"]["samples"], rows))
+        samples = about_run(run)["options"]["samples"]
+        found.append((makers.total() - makers[CODE], samples, rows_left_out(run)))
     if len(found) < 2:
         return None
     found.sort(key=lambda entry: entry[:2])

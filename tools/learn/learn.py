@@ -177,8 +177,9 @@ def do_export(options):
 
 
 def do_curve(options):
+    from document import rows_left_out
     from evaluate import evaluate_run
-    from tables import by_group, table
+    from tables import by_group, once, table
     from train import Options, train
 
     leave_out = folds_of(options)[options.fold or 0]
@@ -187,7 +188,8 @@ def do_curve(options):
         train(Options(data=prepared(options), made=os.path.join(options.work, "made"), run=run, leave_out=leave_out,
                       samples=options.samples, bodies=count, threads=options.threads, samplers=options.samplers,
                       seed=options.seed))
-        rows = [row for row in evaluate_run(run, prepared(options)) if not row["report_only"]]
+        evaluate_run(run, prepared(options))
+        rows = once(rows_left_out(run))
         print(f"\n{count or 'all'} bodies\n" + table("group", by_group(rows)), flush=True)
 
 

@@ -315,8 +315,12 @@ class Page(unittest.TestCase):
             self.assertEqual(cells(document.seeds([one, two, short]).split("\n\n")[1])["J2J: four-legged"],
                              ["2.0", "4.0", "3.0", "2.0"])
             self.assertIsNone(document.seeds([one, short]))
-            few = self.run_with(folder, "reading_curve4", rows(8.0), {"me": 4, CODE: 5})
-            self.assertEqual(list(cells(document.curve([one, few]).split("\n\n")[1])), ["4", "9"])
+            drawn = [made_row(j2j=6.0), made_row("dog", maker="not drawn", j2j=90.0)]
+            curve = [self.run_with(folder, f"reading_curve{n}", drawn, {"you": n, CODE: 5}, leave_out=["me"])
+                     for n in (9, 4)]
+            found = cells(document.curve(curve).split("\n\n")[1])
+            self.assertEqual(list(found), ["4", "9"])
+            self.assertIn("6.0", found["4"])
 
 
 class Pictures(unittest.TestCase):
