@@ -36,6 +36,12 @@ def has_rows(run):
     return os.path.exists(os.path.join(run, "rows.json"))
 
 
+def is_outdated(run):
+    """Whether the run was trained further after it was read."""
+    read, trained = (os.path.getmtime(os.path.join(run, name)) for name in ("rows.json", "state.pt"))
+    return read < trained
+
+
 def training(run, saved):
     """What a run was trained on: the card's table."""
     about = about_run(run)
@@ -85,7 +91,7 @@ def reported(folds, whole):
 
 
 def rows_left_out(run):
-    """Rows of the makers that a run was told to leave out: those that it only happened to draw nothing of are others."""
+    """Rows of the makers that a run was told to leave out, not of those that it happened to draw nothing of."""
     makers = about_run(run)["options"]["leave_out"]
     return [row for row in load_rows([run]) if row["maker"] in makers and not row["report_only"]]
 

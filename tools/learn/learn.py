@@ -195,12 +195,14 @@ def do_curve(options):
 
 def do_document(options):
     import torch
-    from document import SECTIONS, curve, has_rows, left_out, reported, rewrite, seeds, training
+    from document import SECTIONS, curve, has_rows, is_outdated, left_out, reported, rewrite, seeds, training
 
     whole = run_folder(options, "reading")
     folds = [run for run in (run_folder(options, "reading", fold) for fold in range(FOLDS)) if has_rows(run)]
     judged = [run for run in runs_named(options, "reading*") if has_rows(run)]
     curves = [run for run in judged if os.path.basename(run).startswith("reading_curve")]
+    for run in filter(is_outdated, judged):
+        print(os.path.basename(run), "was trained further since it was read: learn.py evaluate", file=sys.stderr)
     sections = dict.fromkeys(SECTIONS)
     if is_trained(whole):
         sections["training"] = training(whole, torch.load(os.path.join(whole, "state.pt"), map_location="cpu"))
