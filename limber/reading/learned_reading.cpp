@@ -53,10 +53,14 @@ ReadingOutput mirroredOutput(const ReadingOutput& output, const ReadingWeights& 
 
 // ---- the mean of two
 
+void checkFinite(float value) {
+  if (!std::isfinite(value)) throw Error(ErrorCode::kBadData, "the weights of the reading give no finite number");
+}
+
 void averageInto(std::vector<float>& values, const std::vector<float>& others) {
   for (std::size_t i = 0; i < values.size(); ++i) {
     values[i] = 0.5f * (values[i] + others[i]);
-    if (!std::isfinite(values[i])) throw Error(ErrorCode::kBadData, "the weights of the reading give no finite number");
+    checkFinite(values[i]);
   }
 }
 
@@ -152,21 +156,6 @@ LearnedFingers decodeFingers(const ReadingOutput& output, std::size_t hand) {
   return {static_cast<int>(count), counts[count]};
 }
 
-// For each of the rotations the one that a mirror image has in its place.
-std::vector<Index> mirroredStances(const std::array<Mat3, kStances>& rotations) {
-  const Vec3 mirror(-1, 1, 1);
-  std::vector<Index> table;
-  for (const Mat3& rotation : rotations) {
-    const Vec3 up = rotation.row(1).transpose().cwiseProduct(mirror);
-    const Vec3 front = rotation.row(2).transpose().cwiseProduct(mirror);
-    const auto found = std::find_if(rotations.begin(), rotations.end(), [&](const Mat3& other) {
-      return other.row(1).transpose() == up && other.row(2).transpose() == front;
-    });
-    table.push_back(static_cast<Index>(found - rotations.begin()));
-  }
-  return table;
-}
-
 }  // namespace
 
 LearnedReading readBody(const TriMesh& mesh, const ReadingWeights& weights, std::span<const KnownJoint> known) {
@@ -189,13 +178,17 @@ LearnedReading readSamples(const SurfaceSamples& surface, const ReadingWeights& 
   return reading;
 }
 
-LearnedStance stanceOf(const SurfaceSamples& surface, const ReadingWeights& weights) {
+LearnedStance stanceOf(SurfaceSamples surface, const ReadingWeights& weights) {
+  surface.samples.resize(std::min(surface.samples.size(), weights.stance.trunk.sizes.samples));
   const std::array<Mat3, kStances> rotations = stanceRotations();
-  std::vector<float> logits, mirror;
-  parallelInvoke([&] { logits = evaluate(weights.stance, sampleFeatures(surface)); },
-                 [&] { mirror = evaluate(weights.stance, sampleFeatures(mirrored(surface))); });
-  averageInto(logits, permuted(mirror, mirroredStances(rotations)));
-  const std::vector<double> values = probabilities(logits);
+  std::vector<float> scores(kStances);
+  parallelFor(kStances, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      scores[i] = evaluate(weights.stance, sampleFeatures(transformed(surface, rotations[i])));
+    }
+  });
+  for (const float score : scores) checkFinite(score);
+  const std::vector<double> values = probabilities(scores);
   LearnedStance stance;
   std::copy(values.begin(), values.end(), stance.probabilities.begin());
   const std::size_t best = likeliest(values);

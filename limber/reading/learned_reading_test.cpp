@@ -138,18 +138,18 @@ TEST(Stance, RotationsAreThoseOfTheCube) {
   EXPECT_EQ(rotations[10], Mat3(Mat3::Identity()));
 }
 
-TEST(Stance, OfAMirrorImageIsTheMirrorImage) {
+TEST(Stance, OfATurnedBodyIsTurnedBack) {
   const ReadingWeights weights = weightsFor();
   const SurfaceSamples surface = sampleSurface(lopsidedBody(), weights.sampleCount());
-  const LearnedStance stance = stanceOf(surface, weights), mirror = stanceOf(mirrored(surface), weights);
-  for (const int row : {1, 2}) {
-    EXPECT_EQ(Vec3(mirror.toBody.row(row).transpose()),
-              Vec3(stance.toBody.row(row).transpose()).cwiseProduct(kMirror).eval());
-  }
-  EXPECT_NEAR(mirror.confidence, stance.confidence, 1e-12);
+  const LearnedStance stance = stanceOf(surface, weights);
   double sum = 0;
   for (const double probability : stance.probabilities) sum += probability;
   EXPECT_NEAR(sum, 1, 1e-12);
+  for (const Mat3& turn : stanceRotations()) {
+    const LearnedStance turned = stanceOf(transformed(surface, turn), weights);
+    EXPECT_EQ(turned.toBody * turn, stance.toBody);
+    EXPECT_NEAR(turned.confidence, stance.confidence, 1e-6);
+  }
 }
 
 }  // namespace

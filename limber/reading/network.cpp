@@ -205,9 +205,9 @@ ReadingOutput evaluate(const ReadingNetwork& network, const FloatMatrix& feature
   return result;
 }
 
-std::vector<float> evaluate(const StanceNetwork& network, const FloatMatrix& features) {
-  return apply(network.stance, evaluateTrunk(network.trunk, features, FloatMatrix(0, network.trunk.sizes.width)).whole)
-      .values;
+float evaluate(const StanceNetwork& network, const FloatMatrix& features) {
+  const FloatMatrix noPins(0, network.trunk.sizes.width);
+  return apply(network.score, evaluateTrunk(network.trunk, features, noPins).whole).values.front();
 }
 
 }  // namespace limber

@@ -52,7 +52,7 @@ struct ReadingNetwork {
 
 struct StanceNetwork {
   NetworkTrunk trunk;
-  Linear stance;
+  Linear score;
 };
 
 inline constexpr std::size_t kFirstWidth = 64;   // of a sample's first layer
@@ -84,7 +84,7 @@ struct ReadingOutput {
 // Cost: 80 million multiplications, 11 ms on one core, for the sizes that limber comes with.
 ReadingOutput evaluate(const ReadingNetwork& network, const FloatMatrix& features, std::span<const RolePin> pins);
 
-// kStances logits.
-std::vector<float> evaluate(const StanceNetwork& network, const FloatMatrix& features);
+// How well a body stands, with up +Y and front +Z: of a body's stances the one that scores most is it. 1.3 ms.
+float evaluate(const StanceNetwork& network, const FloatMatrix& features);
 
 }  // namespace limber

@@ -247,7 +247,8 @@ TEST(StanceNetwork, AgreesWithTheSameInDouble) {
   const ReadingWeights weights = readReadingWeights(made.file());
   const FloatMatrix features = randomFeatures();
   const PlainNetwork plain(made, "stance");
-  expectNear(evaluate(weights.stance, features), plain.linear("stance", plain.run(rowsOf(features), {}).whole));
+  const std::vector<float> score = {evaluate(weights.stance, features)};
+  expectNear(score, plain.linear("score", plain.run(rowsOf(features), {}).whole));
 }
 
 }  // namespace

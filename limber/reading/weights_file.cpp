@@ -281,11 +281,11 @@ ReadingWeights readReadingWeights(ByteSpan file) {
   weights.card = member(description, "card").dump();
 
   const NetworkSizes reading = networkSizes(description, "reading"), stance = networkSizes(description, "stance");
-  if (reading.samples != stance.samples) failWith("the networks read different numbers of samples");
+  if (reading.samples < stance.samples) failWith("the network of the stance reads more samples than the other");
   Tensors tensors(member(description, "tensors"), file.subspan(dataBegin));
   weights.reading = takeReading(tensors, reading, weights);
   weights.stance.trunk = takeTrunk(tensors, "stance", stance);
-  weights.stance.stance = tensors.linear("stance.stance", stance.width, kStances);
+  weights.stance.score = tensors.linear("stance.score", stance.width, 1);
   tensors.checkAllTaken();
   return weights;
 }

@@ -25,7 +25,7 @@ struct ReadingWeights {
   ReadingNetwork reading;
   StanceNetwork stance;
 
-  std::size_t sampleCount() const { return reading.trunk.sizes.samples; }  // the same for both networks
+  std::size_t sampleCount() const { return reading.trunk.sizes.samples; }
 };
 
 // "LRD1"; the length of a JSON text in 32 bits; the text; zeros up to a multiple of 4 bytes; all tensors in IEEE 754's 16

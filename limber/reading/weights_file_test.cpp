@@ -93,7 +93,7 @@ TEST(WeightsFile, SaysWhatIsWrong) {
       {"'networks.reading.layers' is no number from 1 to 64",
        [](auto& made) { made.description["networks"]["reading"]["layers"] = -3; }},
       {"do not divide", [](auto& made) { made.description["networks"]["reading"]["heads"] = 3; }},
-      {"different numbers of samples", [](auto& made) { made.description["networks"]["stance"]["tokens"] = 41; }},
+      {"more samples than the other", [](auto& made) { made.description["networks"]["stance"]["tokens"] = 41; }},
       {"reading.layers.2.n1.weight: a tensor is missing",
        [](auto& made) { made.description["networks"]["reading"]["layers"] = 3; }},
       {"reading.plan.weight: its shape is 8 x 3 in place of 8 x 4",

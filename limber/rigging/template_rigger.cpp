@@ -10,9 +10,11 @@
 #include "limber/core/text/numbers.h"
 #include "limber/geometry/mesh/model_box.h"
 #include "limber/geometry/surface/stray_pieces.h"
+#include "limber/reading/shape_weights.h"
 #include "limber/rigging/body/body_volume.h"
 #include "limber/rigging/figure/figure_search.h"
 #include "limber/rigging/person_template.h"
+#include "limber/rigging/read_template.h"
 #include "limber/rigging/shape/plan_fit.h"
 #include "limber/rigging/shape/shape_reading.h"
 #include "limber/rigging/sphere_mesh_rigger.h"
@@ -329,12 +331,23 @@ std::vector<Hypothesis> planHypotheses(const std::optional<ShapeReading>& shape,
   return hypotheses;
 }
 
+void warnOfStrays(const TriMesh& mesh, const std::optional<TriMesh>& cleared, AutoRig& rig) {
+  if (!cleared) return;
+  rig.warnings.add("stray-pieces", "triangles that float about the model are left out of account", {},
+                   mesh.triangleCount() - cleared->triangleCount());
+}
+
+void warnOfMissingLimbs(const TemplateSkeleton& skeleton, const std::vector<TemplateLimb>& limbs, AutoRig& rig) {
+  const auto missing =
+      std::count_if(limbs.begin(), limbs.end(), [](const TemplateLimb& limb) { return !limb.hasMatch; });
+  if (missing == 0) return;
+  rig.warnings.add("no-place", "limbs of the template have no place in the model", unmatchedLimbs(skeleton, limbs),
+                   static_cast<std::size_t>(missing));
+}
+
 void warn(const Hypothesis& hypothesis, AutoRig& rig) {
   const TemplateFit& fit = hypothesis.fit;
-  if (const std::size_t missing = missingLimbs(fit); missing > 0) {
-    rig.warnings.add("no-place", "limbs of the template have no place in the model",
-                     unmatchedLimbs(fit.skeleton, fit.limbs), missing);
-  }
+  warnOfMissingLimbs(fit.skeleton, fit.limbs, rig);
   if (hypothesis.confidence() < kLikelyTemplate) {
     rig.warnings.add(
         "low-confidence",
@@ -397,6 +410,17 @@ std::vector<TemplateMatch> matchesOf(const std::vector<Hypothesis>& hypotheses) 
   for (const Hypothesis& hypothesis : hypotheses)
     matches.push_back({hypothesis.fit.skeleton.name, hypothesis.confidence()});
   return matches;
+}
+
+AutoRig asRead(const ReadTemplate& read, const TriMesh& mesh, const std::optional<TriMesh>& cleared) {
+  AutoRig rig;
+  rig.skeleton = standingSkeleton(read.skeleton, read.positions, read.frame);
+  rig.matches = read.matches;
+  rig.doubts = read.doubts;
+  rig.up = read.frame.axes.row(1).transpose();
+  warnOfStrays(mesh, cleared, rig);
+  warnOfMissingLimbs(read.skeleton, read.limbs, rig);
+  return rig;
 }
 
 AutoRig withHandles(const TriMesh& mesh, const RigOptions& options, const Hypothesis& likeliest, Progress& progress) {
@@ -523,6 +547,9 @@ AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress
                    [](const Hypothesis& a, const Hypothesis& b) { return a.confidence() > b.confidence(); });
   Hypothesis& likeliest = hypotheses.front();
   if (options.mayAbstain && leavesTheChoice(options) && likeliest.confidence() < kLikelyTemplate) {
+    progress.step("read shape");
+    const std::shared_ptr<const ReadingWeights> weights = options.reading ? options.reading : shapeWeights();
+    if (const auto read = readTemplate(surface, body, frames, *weights)) return asRead(*read, mesh, cleared);
     AutoRig rig = withHandles(mesh, options, likeliest, progress);
     rig.matches = matchesOf(hypotheses);
     return rig;
@@ -556,10 +583,7 @@ AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress
   } else {
     rig.skeleton = standingSkeleton(best.skeleton, best.embedding.positions, best.frame);
   }
-  if (cleared) {
-    rig.warnings.add("stray-pieces", "triangles that float about the model are left out of account", {},
-                     mesh.triangleCount() - cleared->triangleCount());
-  }
+  warnOfStrays(mesh, cleared, rig);
   rig.up = best.frame.axes.row(1).transpose();
   rig.matches = matchesOf(hypotheses);
   if (!person) rig.doubts = doubtsOf(likeliest);

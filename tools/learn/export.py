@@ -13,7 +13,8 @@ import torch.nn as nn
 
 import samples
 import vocabulary as words
-from network import make_network
+from reader import read_stance
+from network import STANCE_TOKENS, make_network
 
 MAGIC = b"LRD1"
 MAX_BYTES = 1_500_000
@@ -40,8 +41,9 @@ def write_weights(path, networks, calibration=None, card=None):
     for name, value in tensors:
         if not np.isfinite(value.astype("f2")).all():
             raise SystemExit(f"{name} has numbers that half precision does not hold")
+    tokens = {"reading": samples.TOKENS, "stance": STANCE_TOKENS}
     text = json.dumps({
-        "networks": {kind: {**sizes, "features": samples.FEATURES, "tokens": samples.TOKENS} 
+        "networks": {kind: {**sizes, "features": samples.FEATURES, "tokens": tokens[kind]}
                      for kind, (_, sizes) in sorted(networks.items())},
         "roles": words.ROLES, "parts": words.PARTS, "plans": words.PLANS,
         "calibration": {name: (calibration or NO_CALIBRATION)[name] for name in NO_CALIBRATION}, "card": card or {},
@@ -99,7 +101,7 @@ def write_golden(path, networks, bodies):
                 case["reading"] = {name: value[0].tolist() for name, value in said.items()}
                 case["pin"] = {"role": pinned, "position": position.tolist(), "y": after["y"][0].tolist()}
             if "stance" in networks:
-                case["stance"] = networks["stance"](tensor)[0].tolist()
+                case["stance"] = read_stance(networks["stance"], inputs).tolist()
         cases.append(case)
     with open(path, "w", encoding="utf-8") as file:
         json.dump(cases, file)

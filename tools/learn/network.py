@@ -13,7 +13,8 @@ import vocabulary as words
 
 SIGMA_RANGE = (-6.0, 2.0)  # of the logarithm of a role's expected error
 READING = {"width": 96, "layers": 6, "heads": 4, "ratio": 2, "places": 96, "near": 12, "globals": 4}
-STANCE = {"width": 64, "layers": 2, "heads": 4, "ratio": 2, "places": 64, "near": 12, "globals": 4}
+STANCE = {"width": 64, "layers": 3, "heads": 4, "ratio": 2, "places": 48, "near": 8, "globals": 4}
+STANCE_TOKENS = 256  # the first of them: 24 passes are made
 EMBEDDING = 64
 
 
@@ -120,11 +121,11 @@ class Reading(Trunk):
 class Stance(Trunk):
     def __init__(self, **sizes):
         super().__init__(**sizes)
-        self.stance = nn.Linear(sizes["width"], len(words.STANCES))
+        self.score = nn.Linear(sizes["width"], 1)
 
     def forward(self, inputs):
-        """24 logits: which of vocabulary.STANCES brings the given frame to the body's."""
-        return self.stance(self.encode(inputs)[0])
+        """(batch,): how well the bodies stand, up +Y and front +Z; of a body's 24 stances the one that scores most is it."""
+        return self.score(self.encode(inputs[:, :STANCE_TOKENS])[0])[:, 0]
 
 
 KINDS = {"reading": (Reading, READING), "stance": (Stance, STANCE)}

@@ -5,11 +5,6 @@ import torch
 import vocabulary as words
 
 MIRROR = np.array([-1.0, 1.0, 1.0], "f4")
-# Stance of the mirrored body -> stance of the body.
-MIRROR_STANCE = np.array([
-    int(np.argmin([np.abs(other - np.diag(MIRROR) @ stance @ np.diag(MIRROR)).sum() for other in words.STANCES]))
-    for stance in words.STANCES
-])
 _AXES = np.r_[0:3, 3:6, 6:9]  # of inputs: position, normal, ball's centre
 
 
@@ -25,6 +20,11 @@ def turned_inputs(inputs, rotation):
     for start in (0, 3, 6):
         result[:, start : start + 3] = inputs[:, start : start + 3] @ rotation.T
     return result
+
+
+def in_all_stances(inputs):
+    """(24, tokens, 11): the tokens as each of vocabulary.STANCES turns them."""
+    return np.stack([turned_inputs(inputs, stance.astype("f4")) for stance in words.STANCES])
 
 
 def softmax(x, axis=-1):
@@ -71,9 +71,6 @@ def read(network, inputs, centre=0.0, scale=1.0, pins=None, both=True):
 
 
 def read_stance(network, inputs):
-    """Probabilities of the 24 stances, from the body and its mirror image."""
+    """Probabilities of the 24 stances, each of which brings the given frame to the body's."""
     with torch.no_grad():
-        own, other = network(torch.from_numpy(np.stack([inputs, mirrored_inputs(inputs)]))).numpy()
-    back = np.empty_like(other)
-    back[MIRROR_STANCE] = other
-    return softmax((own + back) / 2)
+        return softmax(network(torch.from_numpy(in_all_stances(inputs))).numpy())

@@ -20,11 +20,13 @@ import variation
 import vocabulary as words
 from body import load_bodies
 from makers import CODE
-from network import make_network
+from network import STANCE_TOKENS, make_network
 
 PART_TOKENS = 128  # tokens of a sample whose part and bone are learned
 KEPT_STATES_EVERY = 180.0  # seconds
-FIELDS = ("inputs", "y", "has", "part", "bone", "bone_known", "plan", "fingers", "pin_roles", "pin_positions", "stance")
+FIELDS = {"reading": ("inputs", "y", "has", "part", "bone", "bone_known", "plan", "fingers", "pin_roles", "pin_positions"),
+          "stance": ("inputs",)}
+WRONG_STANCES = 5  # of the 23, beside front for back, that a body is told from at a time
 
 
 @dataclass
@@ -70,17 +72,33 @@ def odds(bodies):
 def _sampler(bodies, options, seed, queue):
     """Fills the queue with batches without end."""
     torch.set_num_threads(1)
-    random, weights = np.random.RandomState(seed), odds(bodies)
+    random, weights, fields = np.random.RandomState(seed), odds(bodies), FIELDS[options.kind]
     while True:
         drawn = random.choice(len(bodies), options.batch, p=weights)
-        batch = [variation.vary(bodies[k], random, options.kind == "stance") for k in drawn]
-        queue.put([np.stack([getattr(sample, name) for sample in batch]) for name in FIELDS])
+        batch = [variation.vary(bodies[k], random) for k in drawn]
+        queue.put([np.stack([getattr(sample, name) for sample in batch]) for name in fields])
+
+
+def _stance_loss(network, inputs):
+    """Each body, which stands as it should, against itself with its front to the back and in some other stances."""
+    right = words.UPRIGHT_STANCE
+    back = int(np.argmin([np.abs(stance - np.diag([-1, 1, -1])).sum() for stance in words.STANCES]))
+    others = [k for k in range(len(words.STANCES)) if k not in (right, back)]
+    wrong = torch.stack([torch.randperm(len(others))[:WRONG_STANCES] for _ in inputs])
+    stances = torch.tensor(others)[wrong]
+    stances = torch.cat([torch.tensor([[right, back]]).expand(len(inputs), -1), stances], 1)
+    turns = torch.from_numpy(words.STANCES.astype("f4")).to(inputs.device)[stances.to(inputs.device)]
+    tokens = inputs[:, :STANCE_TOKENS]
+    vectors = tokens[..., :9].reshape(*tokens.shape[:2], 3, 3)  # position, normal, ball's centre
+    turned = torch.einsum("bsij,btvj->bstvi", turns, vectors).flatten(3)
+    rest = tokens[:, None, :, 9:].expand(-1, turned.shape[1], -1, -1)
+    scores = network(torch.cat([turned, rest], -1).flatten(0, 1)).view(len(inputs), -1)
+    return torch.nn.functional.cross_entropy(scores, torch.zeros(len(inputs), dtype=torch.long, device=scores.device))
 
 
 def _step_losses(network, kind, batch):
     if kind == "stance":
-        loss = torch.nn.functional.cross_entropy(network(batch["inputs"]), batch["stance"])
-        return {"stance": loss}, torch.zeros(())
+        return {"stance": _stance_loss(network, batch["inputs"])}, torch.zeros(())
     some = torch.randperm(batch["inputs"].shape[1])[:PART_TOKENS]
     for name in ("part", "bone", "bone_known"):
         batch[name] = batch[name][:, some]
@@ -200,7 +218,7 @@ def _loop(run, queues, samplers):
     with open(os.path.join(options.run, "log.tsv"), "a", encoding="utf-8") as log:
         while run.step < run.steps:
             arrays = _next(queues, samplers, run.step)
-            batch = {name: torch.from_numpy(array).to(options.device) for name, array in zip(FIELDS, arrays)}
+            batch = {name: torch.from_numpy(array).to(options.device) for name, array in zip(FIELDS[options.kind], arrays)}
             parts, off = _step_losses(run.network, options.kind, batch)
             run.advance(losses.total(parts))
             recent.append([float(value) for value in parts.values()] + [float(off)])

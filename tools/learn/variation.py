@@ -41,7 +41,6 @@ class Sample:
     fingers: np.ndarray  # (2,)
     pin_roles: np.ndarray  # (MAX_PINS,), -1: none
     pin_positions: np.ndarray  # (MAX_PINS, 3)
-    stance: int
 
 
 @dataclass
@@ -388,8 +387,8 @@ def _pins(has, y, rng):
     return roles, positions
 
 
-def vary(body, rng, any_stance=False):
-    """A training sample; any_stance: in one of the 24 stances, as the stance network has to tell."""
+def vary(body, rng):
+    """A training sample."""
     cloud = _posed(body, rng)
     _lose_parts(cloud, body, rng)
     if rng.rand() < 0.4:
@@ -402,16 +401,11 @@ def vary(body, rng, any_stance=False):
     _transform(cloud, np.diag(np.exp(rng.randn(3) * 0.1)))
     if rng.rand() < 0.5:
         _mirror(cloud)
-    tilt = rotations((rng.randn(3) * np.radians([5, 8, 4]))[None])[0].astype(float)
-    stance = words.UPRIGHT_STANCE
-    if any_stance:
-        stance = rng.randint(len(words.STANCES))
-        tilt = words.STANCES[stance].T @ tilt
-    _transform(cloud, tilt)
-    return _finish(cloud, body, stance, rng)
+    _transform(cloud, rotations((rng.randn(3) * np.radians([5, 8, 4]))[None])[0].astype(float))
+    return _finish(cloud, body, rng)
 
 
-def _finish(cloud, body, stance, rng):
+def _finish(cloud, body, rng):
     points = cloud.points.astype("f4")
     chosen, radii = samples.pool_tokens(points, cloud.normals)
     inputs, centre, scale = samples.token_inputs(points[chosen], cloud.normals[chosen], radii, cloud.pieces[chosen])
@@ -420,4 +414,4 @@ def _finish(cloud, body, stance, rng):
     pin_roles, pin_positions = _pins(cloud.has, y, rng)
     return Sample(inputs, y, cloud.has.astype("f4"), cloud.part[chosen].astype("i8"), bone.astype("f4"),
                   cloud.known[chosen].astype("f4"), body.plan, cloud.fingers.astype("i8"), pin_roles.astype("i8"),
-                  pin_positions, stance)
+                  pin_positions)

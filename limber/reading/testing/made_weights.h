@@ -78,7 +78,7 @@ class WeightsMaker {
     addLinear("reading.p2", kMadeWidth, kMadeParts);
     addLinear("reading.p2b", kMadeWidth, 6);
     addTrunk("stance");
-    addLinear("stance.stance", kMadeWidth, 24);
+    addLinear("stance.score", kMadeWidth, 1);
     return std::move(made_);
   }
 

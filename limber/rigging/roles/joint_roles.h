@@ -1,0 +1,28 @@
+// Which joints of a reading (ReadingWeights::roles) tell where the joints of a skeleton are.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "limber/character/anatomy/anatomy.h"
+#include "limber/skeleton/skeleton.h"
+
+namespace limber {
+
+// A position on the straight line from the joint of one role to that of another.
+struct RolePosition {
+  std::string from, to;  // the same for a joint that is that of a role
+  double fraction = 0;   // 0 at `from`, 1 at `to`
+
+  bool isRole() const { return from == to; }
+};
+
+// By the anatomy's parts: landmarks of legs and arms are roles; joints of the trunk, of tails and wings lie along the
+// roles of theirs as far as along their chain at rest; further joints of limbs and necks lie between those around them.
+//
+// anatomy  of the skeleton
+// Returns #J; none for joints that no role tells of: props, hair, a face, what is beyond a limb's last role.
+std::vector<std::optional<RolePosition>> jointRoles(const Skeleton& skeleton, const Anatomy& anatomy);
+
+}  // namespace limber
