@@ -141,6 +141,20 @@ def do_calibrate(options):
     print(json.dumps(result))
 
 
+def _trained(run):
+    """Samples and hours of a run and of those whose weights it started from."""
+    import torch
+
+    samples, hours = 0, 0.0
+    while run:
+        saved = torch.load(os.path.join(run, "state.pt"), map_location="cpu")
+        samples += saved["step"] * saved["batch"]
+        hours += saved["seconds"] / 3600
+        with open(os.path.join(run, "run.json"), encoding="utf-8") as file:
+            run = json.load(file)["options"]["start"]
+    return {"samples": samples, "hours": round(hours, 2)}
+
+
 def do_export(options):
     from body import load_bodies
     from export import read_weights, write_golden, write_weights
@@ -154,7 +168,7 @@ def do_export(options):
             networks[kind] = network, saved["sizes"]
             with open(os.path.join(run, "run.json"), encoding="utf-8") as file:
                 runs[kind] = json.load(file)
-            runs[kind].update(samples=saved["step"] * saved["batch"], hours=round(saved["seconds"] / 3600, 2))
+            runs[kind].update(_trained(run))
     if "reading" not in networks:
         raise SystemExit("no network is trained: learn.py train reading")
     calibration = calibration_of(options)

@@ -9,13 +9,17 @@ A body's own frame: +Y up, +Z front, +X its left. What is written (n = 4096 poin
     plan, fingers (2,)                               indices and numbers; -1: unknown
     axes (3, 3)                                      rows: the file's directions of left, up, front
     side, height, confidence, name, source, maker, licence, report_only, by_hand
+
+Heads, hands, arms and legs of some files stand alone in files of their own, as bodies without a plan.
 """
 import json
 import os
 import time
+import zlib
 from collections import Counter
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 import samples
 import vocabulary as words
@@ -59,8 +63,43 @@ def _reach(points, joints, parents, strongest):
     return reach
 
 
+# Parts of bodies that stand alone, as heads, hands and busts' pieces do, and one in how many files gives each.
+ALONE = {"head": (("head", "ear", "neck"), 3), "hand": (("fore_end.L",), 4), "arm": (("fore",), 8), "leg": (("hind",), 8)}
+FEWEST_ALONE = 150  # triangles
+
+
+def _alone(model, vertices, joint_part, arrays):
+    """A part of the body by itself is no body: name of the part -> arrays, in any orientation."""
+    seed = zlib.crc32(str(arrays["name"]).encode())
+    random = np.random.RandomState(seed)
+    part = joint_part[model.weights.argmax(1)]
+    for number, (name, (parts, odds)) in enumerate(ALONE.items()):
+        wanted = [k for k, other in enumerate(words.PARTS) if other.startswith(parts) and not other.endswith(".R")]
+        triangles = model.triangles[np.isin(part[model.triangles], wanted).all(1)]
+        turn = Rotation.random(random_state=random).as_matrix()
+        if (seed >> number) % odds or len(triangles) < FEWEST_ALONE:
+            continue
+        points, normals, pieces, _, _ = samples.draw_points(vertices @ turn.T, triangles)
+        order = samples.farthest_first(points, samples.POOL)
+        order = np.r_[order, np.setdiff1d(np.arange(len(points)), order)]
+        influences = np.zeros((samples.POOL, INFLUENCES), "f4")
+        influences[:, 0] = 1
+        extent = np.ptp(points, axis=0)
+        yield name, {
+            **arrays, "points": points[order].astype("f4"), "normals": normals[order].astype("f4"),
+            "pieces": pieces[order].astype("f4"), "weight_joint": np.zeros((samples.POOL, INFLUENCES), "i2"),
+            "weight": influences, "joints": points.mean(0, keepdims=True).astype("f4"),
+            "bone_ends": points.mean(0, keepdims=True).astype("f4"), "parents": np.full(1, -1, "i2"),
+            "joint_part": np.zeros(1, "i1"), "counted": np.zeros(1, bool),
+            "role_joints": np.full((len(words.ROLES), 2), -1, "i2"),
+            "role_fraction": np.zeros(len(words.ROLES), "f4"), "plan": words.PLAN["none"],
+            "fingers": np.zeros(2, int), "axes": turn @ arrays["axes"], "side": float(extent.max()),
+            "height": float(extent[1]), "name": f"{arrays['name']}__{name}_alone",
+        }
+
+
 def prepare_file(source, limber, by_hand):
-    """The arrays of one file; raises ValueError where there is no truth in it."""
+    """The arrays of one file, and those of parts of it that stand alone; ValueError where there is no truth in it."""
     anatomy = anatomy_of(source.path, source.file, limber, by_hand)
     if anatomy.drop:
         raise ValueError("labelled as without truth")
@@ -91,7 +130,7 @@ def prepare_file(source, limber, by_hand):
     reach = _reach(points[pool], joints, labels.parents, strongest[:, 0])
     ends = bone_ends(joints, labels.parents, labels.joint_part, reach)
     extent = np.ptp(vertices[np.unique(model.triangles)], axis=0)
-    return {
+    arrays = {
         "points": points.astype("f4"), "normals": normals.astype("f4"), "pieces": pieces.astype("f4"),
         "weight_joint": strongest.astype("i2"), "weight": kept.astype("f4"),
         "joints": joints.astype("f4"), "bone_ends": ends.astype("f4"), "parents": labels.parents.astype("i2"),
@@ -101,6 +140,7 @@ def prepare_file(source, limber, by_hand):
         "height": float(extent[1]), "confidence": float(anatomy.confidence), "name": source.name, "source": source.file,
         "maker": source.maker, "licence": source.licence, "report_only": source.report_only, "by_hand": anatomy.by_hand,
     }
+    return arrays, list(_alone(model, vertices, labels.joint_part, arrays))
 
 
 def prepare(data, out, limber, label_folders=(), only="", limit=None, again=False):
@@ -118,8 +158,10 @@ def prepare(data, out, limber, label_folders=(), only="", limit=None, again=Fals
             done += 1
             started = time.time()
             try:
-                arrays = prepare_file(source, limber, by_hand)
+                arrays, alone = prepare_file(source, limber, by_hand)
                 _save(target, arrays)
+                for name, part in alone:
+                    _save(target.removesuffix(".npz") + f"__{name}_alone.npz", part)
                 plans[words.PLANS[arrays["plan"]]] += 1
                 said = _summary(arrays)
             except Exception as error:  # one faulty file must not end the preparation of hundreds

@@ -121,6 +121,40 @@ def _lifted_arms(body, rng, matrices):
             matrices[k] = rotations(np.array([[0, 0, angle]]))[0] @ matrices[k]
 
 
+def _about(axis, angle):
+    """Rotation by an angle about a vector of any length."""
+    return rotations(np.asarray(axis)[None] / max(np.linalg.norm(axis), 1e-9) * angle)[0]
+
+
+def _act(body, rng, matrices):
+    """People who sit, stride, kneel, crouch or bow, with arms before them or bent."""
+    left, up, front = np.eye(3)
+    first = {}
+    for k, part in enumerate(body.active_part):
+        first.setdefault(part, k)
+    trunk = [k for k, part in enumerate(body.active_part) if part == "trunk"]
+    for k in trunk:
+        matrices[k] = _about(left, rng.uniform(-0.15, 0.8) * rng.rand() / len(trunk)) @ matrices[k]
+    strides, hip, knee = rng.rand() < 0.5, rng.uniform(0, 1.9), rng.rand()
+    forward, bend, toward = rng.uniform(0, 1.7) * (rng.rand() < 0.6), rng.uniform(0, 2.3), rng.rand()
+    for side, sign in (("L", 1.0), ("R", -1.0)):
+        if strides:
+            hip, knee = (-0.5 * hip if sign < 0 else hip), rng.rand()
+        if rng.rand() < 0.3:
+            forward, bend, toward = rng.uniform(0, 1.7), rng.uniform(0, 2.3), rng.rand()
+        turns = {
+            "hind_upper": _about(front, sign * rng.uniform(-0.1, 0.4)) @ _about(left, -hip),
+            "hind_lower": _about(left, knee * (max(hip, 0) + 0.8)),
+            "fore_upper": _about(up, -sign * forward),
+        }
+        for part, turn in turns.items():
+            if (k := first.get(f"{part}.{side}")) is not None:
+                matrices[k] = turn @ matrices[k]
+        if (k := first.get(f"fore_lower.{side}")) is not None:
+            axis = np.cross(body.direction[k], toward * front + (1 - toward) * up)
+            matrices[k] = _about(axis, bend) @ matrices[k]
+
+
 def _stretches(body, rng):
     """group -> (along the bone, across it)."""
     result = {}
@@ -141,6 +175,8 @@ def _pose(body, rng):
     turn = rotations(_rotation_vectors(body, rng))
     if body.plan == words.PLAN["upright"] and rng.rand() < 0.6:
         _lifted_arms(body, rng, turn)
+    if body.plan == words.PLAN["upright"] and rng.rand() < 0.35:
+        _act(body, rng, turn)
     stretch = _stretches(body, rng)
     base = [_split(part)[0] for part in body.active_part]
     along, across = np.array([stretch[GROUP.get(b, "trunk")] for b in base], "f4").T
@@ -182,6 +218,32 @@ def _lose_parts(cloud, body, rng):
         gone = [index for part, index in words.PART.items() if part.startswith(lost)]
         if cloud.has[names].any() and _keep_most(cloud, ~np.isin(cloud.part, gone)):
             cloud.has[names] = False
+
+
+LIMBS = (("fore_",), ("hind_",), ("head", "neck", "jaw", "ear"))  # roles and parts of what a broken body lacks
+
+
+def _break(cloud, rng):
+    """Half bodies, busts, torsos: limbs or all beyond a plane are not there, and neither are the roles."""
+    if rng.rand() < 0.4:
+        lost = LIMBS[rng.randint(len(LIMBS))]
+        side = rng.choice(["", ".L", ".R"]) if lost[0].endswith("_") else ""
+        is_lost = lambda name: name.startswith(lost) and name.endswith(side)
+        fingers = lambda name: lost == ("fore_",) and name.startswith("finger") and name.endswith(side)
+        gone = np.array([is_lost(name) or fingers(name) for name in words.ROLES])
+        if _keep_most(cloud, ~np.isin(cloud.part, [k for name, k in words.PART.items() if is_lost(name)])):
+            cloud.has &= ~gone
+            if lost == ("fore_",):
+                cloud.fingers[[side != ".R", side != ".L"]] = 0
+        return
+    normal = np.array([0, rng.choice([-1, 1]), 0]) if rng.rand() < 0.7 else rng.choice([-1, 1]) * np.eye(3)[rng.choice([0, 2])]
+    along = cloud.points @ normal
+    limit = np.quantile(along, rng.uniform(0.4, 0.95))
+    if _keep_most(cloud, along < limit):
+        cloud.has &= cloud.roles @ normal < limit + 0.02 * np.ptp(along)
+        for hand, side in enumerate(words.SIDES):
+            if not cloud.has[words.ROLE["fore_end" + side]]:
+                cloud.fingers[hand] = 0
 
 
 def _keep_most(cloud, keep):
@@ -397,6 +459,8 @@ def vary(body, rng):
         _bend(cloud, rng)
     if rng.rand() < 0.35:
         _dress(cloud, body, rng)
+    if rng.rand() < 0.06:
+        _break(cloud, rng)
     _damage(cloud, rng)
     _transform(cloud, np.diag(np.exp(rng.randn(3) * 0.1)))
     if rng.rand() < 0.5:
