@@ -7,6 +7,7 @@ import re
 from collections import Counter
 
 import tables
+from export import trained_for
 import vocabulary as words
 from evaluate import about_run, load_rows
 from makers import CODE, LICENCES
@@ -42,15 +43,15 @@ def is_outdated(run):
     return read < trained
 
 
-def training(run, saved):
+def training(run):
     """What a run was trained on: the card's table."""
-    about = about_run(run)
+    about, cost = about_run(run), trained_for(run)
     made = about["makers"].get(CODE, 0)
     lines = [[maker, count, about["licences"].get(maker) or LICENCES.get(maker, "")]
              for maker, count in sorted(about["makers"].items(), key=lambda item: (-item[1], item[0]))]
     plans = ", ".join(f"{plan} {about['plans'].get(plan, 0)}" for plan in words.PLANS)
     return (f"{about['bodies'] - made} rigged models of {len(lines) - bool(made)} makers and {made} bodies made by "
-            f"code; {saved['step'] * saved['batch']:,} samples, {saved['seconds'] / 3600:.1f} hours, seed "
+            f"code; {cost['samples']:,} samples, {cost['hours']:.1f} hours, seed "
             f"{about['options']['seed']}, {about['numbers']:,} numbers. By kind: {plans}.\n\n"
             + tables.markdown(["maker", "files", "licence"], lines))
 

@@ -5,6 +5,7 @@ half precision numbers in the order of the text's list "tensors", zeros to a mul
 are input-major: row = input.
 """
 import json
+import os
 import struct
 
 import numpy as np
@@ -19,6 +20,18 @@ from network import STANCE_TOKENS, make_network
 MAGIC = b"LRD1"
 MAX_BYTES = 1_500_000
 NO_CALIBRATION = {"plan_temperature": 1.0, "error_factor": 1.0, "sure_threshold": 0.9}
+
+
+def trained_for(run):
+    """Samples and hours of a run and of those whose weights it started from."""
+    samples, hours = 0, 0.0
+    while run:
+        saved = torch.load(os.path.join(run, "state.pt"), map_location="cpu")
+        samples += saved["step"] * saved["batch"]
+        hours += saved["seconds"] / 3600
+        with open(os.path.join(run, "run.json"), encoding="utf-8") as file:
+            run = json.load(file)["options"]["start"]
+    return {"samples": samples, "hours": round(hours, 2)}
 
 
 def _linear_weights(network):

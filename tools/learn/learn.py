@@ -141,23 +141,9 @@ def do_calibrate(options):
     print(json.dumps(result))
 
 
-def _trained(run):
-    """Samples and hours of a run and of those whose weights it started from."""
-    import torch
-
-    samples, hours = 0, 0.0
-    while run:
-        saved = torch.load(os.path.join(run, "state.pt"), map_location="cpu")
-        samples += saved["step"] * saved["batch"]
-        hours += saved["seconds"] / 3600
-        with open(os.path.join(run, "run.json"), encoding="utf-8") as file:
-            run = json.load(file)["options"]["start"]
-    return {"samples": samples, "hours": round(hours, 2)}
-
-
 def do_export(options):
     from body import load_bodies
-    from export import read_weights, write_golden, write_weights
+    from export import read_weights, trained_for, write_golden, write_weights
     from network import load_network
 
     networks, runs = {}, {}
@@ -168,7 +154,7 @@ def do_export(options):
             networks[kind] = network, saved["sizes"]
             with open(os.path.join(run, "run.json"), encoding="utf-8") as file:
                 runs[kind] = json.load(file)
-            runs[kind].update(_trained(run))
+            runs[kind].update(trained_for(run))
     if "reading" not in networks:
         raise SystemExit("no network is trained: learn.py train reading")
     calibration = calibration_of(options)
@@ -208,7 +194,6 @@ def do_curve(options):
 
 
 def do_document(options):
-    import torch
     from document import SECTIONS, curve, has_rows, is_outdated, left_out, reported, rewrite, seeds, training
 
     whole = run_folder(options, "reading")
@@ -219,7 +204,7 @@ def do_document(options):
         print(os.path.basename(run), "was trained further since it was read: learn.py evaluate", file=sys.stderr)
     sections = dict.fromkeys(SECTIONS)
     if is_trained(whole):
-        sections["training"] = training(whole, torch.load(os.path.join(whole, "state.pt"), map_location="cpu"))
+        sections["training"] = training(whole)
     if folds:
         sections |= left_out(folds, calibration_of(options) or {})
     sections["reported"] = reported(folds, whole)
