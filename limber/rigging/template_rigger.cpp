@@ -549,7 +549,9 @@ AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress
   if (options.mayAbstain && leavesTheChoice(options) && likeliest.confidence() < kLikelyTemplate) {
     progress.step("read shape");
     const std::shared_ptr<const ReadingWeights> weights = options.reading ? options.reading : shapeWeights();
-    if (const auto read = readTemplate(surface, body, frames, *weights)) return asRead(*read, mesh, cleared);
+    const std::optional<ReadTemplate> read = readTemplate(surface, body, frames, *weights);
+    // The search finds people better than the reading, which takes heads and hands for some.
+    if (read && !isHumanoid(read->skeleton)) return asRead(*read, mesh, cleared);
     AutoRig rig = withHandles(mesh, options, likeliest, progress);
     rig.matches = matchesOf(hypotheses);
     return rig;
