@@ -33,6 +33,7 @@ const cases = {
   },
   async 'every file of the page comes as it was built, with its type'() {
     const types = { html: /^text\/html/, js: /^text\/javascript/, css: /^text\/css/, wasm: /^application\/wasm$/, zst: /^application\/octet-stream$/,
+      lrd: /^application\/octet-stream$/,
       png: /^image\/png$/, webmanifest: /^application\/manifest\+json$/ };
     const files = readdirSync(dist, { recursive: true, withFileTypes: true }).filter((entry) => entry.isFile());
     assert.ok(files.length >= 4);
