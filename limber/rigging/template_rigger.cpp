@@ -155,14 +155,14 @@ TemplateFit judged(TemplateFit fit, const BodyVolume& body) {
   return fit;
 }
 
-std::size_t missingLimbs(const TemplateFit& fit) {
+std::size_t missingLimbs(const std::vector<TemplateLimb>& limbs) {
   return static_cast<std::size_t>(
-      std::count_if(fit.limbs.begin(), fit.limbs.end(), [](const TemplateLimb& limb) { return !limb.hasMatch; }));
+      std::count_if(limbs.begin(), limbs.end(), [](const TemplateLimb& limb) { return !limb.hasMatch; }));
 }
 
 // From the cost and the fraction of limbs that have a match: it falls fast with each missing limb.
 double confidenceOf(const TemplateFit& fit) {
-  const double placed = 1 - static_cast<double>(missingLimbs(fit)) / static_cast<double>(fit.limbs.size());
+  const double placed = 1 - static_cast<double>(missingLimbs(fit.limbs)) / static_cast<double>(fit.limbs.size());
   return placed * placed * placed / (1 + std::pow(fit.cost / kCostOfDoubt, 3.0));
 }
 
@@ -338,11 +338,10 @@ void warnOfStrays(const TriMesh& mesh, const std::optional<TriMesh>& cleared, Au
 }
 
 void warnOfMissingLimbs(const TemplateSkeleton& skeleton, const std::vector<TemplateLimb>& limbs, AutoRig& rig) {
-  const auto missing =
-      std::count_if(limbs.begin(), limbs.end(), [](const TemplateLimb& limb) { return !limb.hasMatch; });
+  const std::size_t missing = missingLimbs(limbs);
   if (missing == 0) return;
   rig.warnings.add("no-place", "limbs of the template have no place in the model", unmatchedLimbs(skeleton, limbs),
-                   static_cast<std::size_t>(missing));
+                   missing);
 }
 
 void warn(const Hypothesis& hypothesis, AutoRig& rig) {
@@ -571,10 +570,10 @@ AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress
     placeBetween(best.skeleton, best.embedding.positions);
     if (!best.skeleton.bent()) refineHocks(best.skeleton, body, best.frame, best.pins, best.embedding.positions);
     refineQuadruped(best.skeleton, body, best.frame, best.pins, best.embedding.positions);
-    const std::size_t missing = missingLimbs(best);
+    const std::size_t missing = missingLimbs(best.limbs);
     findHeadless(best.skeleton, best.embedding.positions, best.limbs);
     // A shape that ends at the shoulders speaks for nobody.
-    if (missingLimbs(best) > missing) likeliest.vote = std::min(likeliest.vote, 0.0);
+    if (missingLimbs(best.limbs) > missing) likeliest.vote = std::min(likeliest.vote, 0.0);
   }
   AutoRig rig;
   if (person) {

@@ -39,8 +39,8 @@ void checkTemplateName(std::string_view name);
 // Kinds of bodies that are recognised by their shape alone (planKinds) are laid along its curves, and the limbs that
 // the shape rests on count for or against every template (readShape). Where no template is likely, "auto" asks the
 // learned reading (readTemplate), and abstains where that is not sure of an animal (RigOptions::mayAbstain): then the
-// model gets handles, with the warning "no-template". Other warnings: "no-place"
-// with the limbs that the model seems to lack, "low-confidence", "stray-pieces" (withoutStrays), with their triangles.
+// model gets handles, with the warning "no-template". Other warnings: "no-place" with the limbs that the model seems to
+// lack, "low-confidence", "stray-pieces" (withoutStrays), with their triangles.
 // Throws Error kBadArgument for an unknown template or pinned joint, one that is pinned twice or far outside the mesh.
 AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress& progress);
 

@@ -122,7 +122,7 @@ def _limb_role(part, leg_pairs, has_arms):
     return "fore" if k < 0 else ("mida", "midb", "midc")[k] if k < 3 else None
 
 
-class _Reader:
+class PartReader:
     """Fills the labels part by part."""
 
     def __init__(self, parts, names, joints, parents):
@@ -268,7 +268,7 @@ def plan_of(parts, positions):
 
 def read_labels(anatomy, names, joints, parents):
     """Labels of a body whose joints are given in its own frame."""
-    reader = _Reader(anatomy.parts, names, joints, parents)
+    reader = PartReader(anatomy.parts, names, joints, parents)
     reader.read()
     reader.link_chains()
     role_joints = np.full((len(words.ROLES), 2), -1)

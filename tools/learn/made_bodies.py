@@ -23,11 +23,12 @@ os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
 import numpy as np
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-import made_roles
 from made_maker import Maker, Y
 from made_plans import KINDS
-from made_shapes import ball, box, farthest_first, inner_radii, surface_points, sweep, vec
+from labels import PartReader
+from made_shapes import ball, box, inner_radii, surface_points, sweep, vec
 from made_things import THINGS
+from samples import farthest_first
 from vocabulary import PLAN, ROLES
 
 ALL = {**KINDS, **THINGS}
@@ -179,14 +180,15 @@ def prepared(m, r):
         own[at], wi[at], wv[at] = soft_weights(u[at], m.pieces[k].joints, m.pieces[k].smooth,
                                                m.parents[m.pieces[k].joints[0]])
     names = ['j%d' % k for k in range(len(J))]
-    roles, label, count = made_roles.read(m.parts, names, J)
+    reader = PartReader(m.parts, names, J, m.parents)
+    reader.read()
+    roles, label, count = reader.role, reader.joint_part, reader.counted
     rj = np.array([roles[x][:2] if x in roles else (-1, -1) for x in ROLES])
     rt = np.array([roles[x][2] if x in roles else 0 for x in ROLES])
     lo, hi = all_points.min(0), all_points.max(0)
     return dict(P=P.astype('f4'), N=N.astype('f4'), rad=rad.astype('f4'), wi=wi.astype('i2'), wv=wv.astype('f4'),
                 J=J.astype('f4'), parents=np.array(m.parents), label=label,
                 count=count, rj=rj, rt=rt.astype('f4'), plan=PLAN[m.plan],
-                lean=made_roles.plan_of(m.parts, roles, J)[1],
                 conf=1., how='made', axes=np.eye(3),
                 side=float((hi - lo).max()), height=float(hi[1] - lo[1]), path='', turned=turned,
                 roles=np.array(ROLES), part=label[own].astype('i2'), own=own.astype('i2'),

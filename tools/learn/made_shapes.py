@@ -243,22 +243,6 @@ def surface_points(V, F, first, n):
     return (V[F[f]] * w[:, :, None]).sum(1), cross[f] / np.maximum(twice[f, None], 1e-20), f, w
 
 
-def farthest_first(P, n):
-    """Indices: the point farthest from the mean, then each time the one farthest from all before."""
-    X = np.ascontiguousarray(P.T)
-    d = np.full(len(P), np.inf)
-    k = int(((P - P.mean(0)) ** 2).sum(1).argmax())
-    out = np.zeros(n, int)
-    for i in range(n):
-        out[i] = k
-        e = (X[0] - X[0, k]) ** 2
-        e += (X[1] - X[1, k]) ** 2
-        e += (X[2] - X[2, k]) ** 2
-        np.minimum(d, e, out=d)
-        k = int(d.argmax())
-    return out
-
-
 def inner_radii(P, N, Q, size):
     """Radius of the largest ball that touches P from inside (normals N) and has none of the points Q inside."""
     cap = .25 * size

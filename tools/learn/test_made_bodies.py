@@ -9,8 +9,8 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import numpy as np
 
 import made_bodies
-import made_roles
 import made_shapes as shapes
+from labels import PartReader, plan_of
 
 
 def volume(piece):
@@ -45,8 +45,11 @@ class Bodies(unittest.TestCase):
             with self.subTest(kind):
                 m = made_bodies.build(kind, 7)
                 J = np.array(m.J)
-                roles, _, _ = made_roles.read(m.parts, ["j%d" % k for k in range(len(J))], J)
-                self.assertEqual(made_roles.plan_of(m.parts, roles, J)[0], plan)
+                reader = PartReader(m.parts, ["j%d" % k for k in range(len(J))], J, m.parents)
+                reader.read()
+                roles = reader.role
+                positions = {role: (1 - f) * J[a] + f * J[b] for role, (a, b, f) in roles.items()}
+                self.assertEqual(plan_of(m.parts, positions), plan)
                 self.assertTrue(np.isfinite(J).all() and all(np.isfinite(p.V).all() for p in m.pieces))
                 for p in m.pieces:
                     self.assertTrue(p.u.min() >= 0 and p.u.max() < len(p.joints))

@@ -26,7 +26,7 @@ PART_TOKENS = 128  # tokens of a sample whose part and bone are learned
 KEPT_STATES_EVERY = 180.0  # seconds
 FIELDS = {"reading": ("inputs", "y", "has", "part", "bone", "bone_known", "plan", "fingers", "pin_roles", "pin_positions"),
           "stance": ("inputs",)}
-WRONG_STANCES = 5  # of the 23, beside front for back, that a body is told from at a time
+WRONG_STANCES = 5  # of the 23, beside front for back, that a body is compared with at a time
 
 
 @dataclass

@@ -78,9 +78,9 @@ class SkeletonBuilder {
   }
 
   Index nearest(const std::string& role, Index one, Index other) const {
-    const Vec3 hangs = 0.5 * (reading_.position(at(role + ".L")) + reading_.position(at(role + ".R")));
+    const Vec3 root = 0.5 * (reading_.position(at(role + ".L")) + reading_.position(at(role + ".R")));
     const std::vector<TemplateJoint>& joints = made_.skeleton.joints;
-    return (joints[one].position - hangs).norm() <= (joints[other].position - hangs).norm() ? one : other;
+    return (joints[one].position - root).norm() <= (joints[other].position - root).norm() ? one : other;
   }
 
   // A digitigrade leg's raised heel is called the foot, what it rests on its toes.
@@ -161,11 +161,11 @@ class SkeletonBuilder {
     for (std::size_t i = 1; i < roles.size(); ++i) {
       distances.push_back(distances.back() + (reading_.position(roles[i]) - reading_.position(roles[i - 1])).norm());
     }
-    const double wanted = fraction * distances.back();
+    const double distance = fraction * distances.back();
     std::size_t i = 1;
-    while (i + 1 < roles.size() && distances[i] < wanted) ++i;
+    while (i + 1 < roles.size() && distances[i] < distance) ++i;
     const double length = std::max(distances[i] - distances[i - 1], 1e-12);
-    return {roles[i - 1].from, roles[i].from, std::clamp((wanted - distances[i - 1]) / length, 0.0, 1.0)};
+    return {roles[i - 1].from, roles[i].from, std::clamp((distance - distances[i - 1]) / length, 0.0, 1.0)};
   }
 
   // Joints of that name along the spine; the last.
@@ -179,7 +179,7 @@ class SkeletonBuilder {
     return parent;
   }
 
-  // The root is before the middle, as artists have it: head and tail are told apart by what hangs there.
+  // The root is before the middle, as artists have it: head and tail differ by what is attached to them.
   void swim() {
     const std::vector<RolePosition> spine = spineRoles();
     const Index chest = add("chest", {}, along(spine, 0.25));
