@@ -149,6 +149,16 @@ class Variation(unittest.TestCase):
                 self.assertTrue(np.isfinite(value).all())
             self.assertEqual(one.inputs.shape, (samples.TOKENS, 11))
 
+    def test_a_mirrored_sample_is_that_of_the_mirrored_body(self):
+        sample = variation.vary(person_body(), np.random.RandomState(4))
+        twice = variation.mirrored(variation.mirrored(sample, np.random.RandomState(1)), np.random.RandomState(2))
+        for name in ("inputs", "y", "has", "part", "bone", "fingers"):
+            np.testing.assert_array_equal(getattr(twice, name), getattr(sample, name))
+        once = variation.mirrored(sample, np.random.RandomState(1))
+        left, right = (words.ROLE[f"fore_middle.{side}"] for side in "LR")
+        np.testing.assert_array_equal(once.y[left], sample.y[right] * [-1, 1, 1])
+        self.assertEqual(words.PARTS[once.part[0]], words.mirrored(words.PARTS[sample.part[0]]))
+
     def test_bones_and_roles_move_together(self):
         body = person_body()
         sample = variation.vary(body, np.random.RandomState(3))

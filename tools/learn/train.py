@@ -74,8 +74,9 @@ def _sampler(bodies, options, seed, queue):
     torch.set_num_threads(1)
     random, weights, fields = np.random.RandomState(seed), odds(bodies), FIELDS[options.kind]
     while True:
-        drawn = random.choice(len(bodies), options.batch, p=weights)
+        drawn = random.choice(len(bodies), options.batch // 2, p=weights)
         batch = [variation.vary(bodies[k], random) for k in drawn]
+        batch += [variation.mirrored(sample, random) for sample in batch]
         queue.put([np.stack([getattr(sample, name) for sample in batch]) for name in fields])
 
 

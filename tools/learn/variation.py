@@ -449,6 +449,17 @@ def _pins(has, y, rng):
     return roles, positions
 
 
+def mirrored(sample, rng):
+    """The sample in the mirror, with other pins: as good a sample, and drawn for nothing."""
+    flip = np.array([-1, 1, 1], "f4")
+    inputs = sample.inputs.copy()
+    inputs[:, :9] *= np.tile(flip, 3)  # position, normal, ball's centre
+    y, has = sample.y[words.MIRROR_ROLE] * flip, sample.has[words.MIRROR_ROLE]
+    pin_roles, pin_positions = _pins(has > 0, y, rng)
+    return Sample(inputs, y, has, words.MIRROR_PART[sample.part], sample.bone * np.tile(flip, 2), sample.bone_known,
+                  sample.plan, sample.fingers[::-1].copy(), pin_roles.astype("i8"), pin_positions)
+
+
 def vary(body, rng):
     """A training sample."""
     cloud = _posed(body, rng)
