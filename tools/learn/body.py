@@ -32,10 +32,24 @@ class Body:
         self.has = role_joints[:, 0] >= 0
         self.roles = (1 - fraction) * self.joints[role_joints[:, 0]] + fraction * self.joints[role_joints[:, 1]]
         self.roles[~self.has] = 0
+        self._find_fingers(a["parents"].astype(int), role_joints)
         self._choose_active(a["parents"].astype(int), a["joint_part"].astype(int), role_joints)
         self.role_fraction = fraction
         self.role_first, self.role_second = self.of[role_joints].T
         self._spread_weights(a["weight_joint"].astype(int), a["weight"], a["joint_part"].astype(int))
+
+    def _find_fingers(self, parents, role_joints):
+        """side -> (joints,) whether the joint is one of a finger."""
+        self.finger = {side: np.zeros(len(parents), bool) for side in words.SIDES}
+        for role, joint in zip(words.ROLES, role_joints[:, 0]):
+            if role.startswith("finger") and joint >= 0:
+                self.finger[role[-2:]][joint] = True
+        for is_finger in self.finger.values():
+            for joint in range(len(parents)):
+                above = joint
+                while above >= 0 and not is_finger[above]:
+                    above = parents[above]
+                is_finger[joint] = above >= 0
 
     def _choose_active(self, parents, joint_part, role_joints):
         stiff = np.isin(joint_part, [words.PART[part] for part in STIFF_PARTS])

@@ -25,6 +25,7 @@ LOOSE_GROUPS = ("head", "ear", "tail", "fin", "wing", "hand")  # whose sizes dif
 UNIFORM_PARTS = ("head", "fore_end", "hind_end", "ear")  # stretched alike in all directions
 MAX_HEAD = 0.6  # largest size of a stretched head, of the diagonal of the body's box
 MAX_PROP = 0.75  # the same of a prop
+SURFACE = 0.35  # area of a body's surface, about, of the square of that diagonal
 OPTIONAL = ("ear", "tail")  # parts that a body may lose and still be of its plan
 PROP = words.PART["prop"]
 
@@ -55,12 +56,13 @@ class _Cloud:
     end: np.ndarray
     known: np.ndarray
     flesh: np.ndarray  # radius of the inner ball at rest
+    index: np.ndarray  # of the body's point; -1: of what was added
     roles: np.ndarray
     has: np.ndarray
     fingers: np.ndarray
 
     def keep(self, chosen):
-        for name in ("points", "normals", "pieces", "part", "start", "end", "known", "flesh"):
+        for name in ("points", "normals", "pieces", "part", "start", "end", "known", "flesh", "index"):
             setattr(self, name, getattr(self, name)[chosen])
 
     def map_positions(self, function):
@@ -133,8 +135,12 @@ def _act(body, rng, matrices):
     for k, part in enumerate(body.active_part):
         first.setdefault(part, k)
     trunk = [k for k, part in enumerate(body.active_part) if part == "trunk"]
+    bow, twist, lean = rng.uniform(-0.2, 1.0) * rng.rand(), rng.randn() * 0.25, rng.randn() * 0.15
     for k in trunk:
-        matrices[k] = _about(left, rng.uniform(-0.15, 0.8) * rng.rand() / len(trunk)) @ matrices[k]
+        matrices[k] = _about([bow, twist, lean], np.linalg.norm([bow, twist, lean]) / len(trunk)) @ matrices[k]
+    for part, amount in (("neck", 0.2), ("head", 0.35)):
+        if (k := first.get(part)) is not None:
+            matrices[k] = rotations(rng.randn(1, 3) * amount)[0] @ matrices[k]
     strides, hip, knee = rng.rand() < 0.5, rng.uniform(0, 1.9), rng.rand()
     forward, bend, toward = rng.uniform(0, 1.7) * (rng.rand() < 0.6), rng.uniform(0, 2.3), rng.rand()
     for side, sign in (("L", 1.0), ("R", -1.0)):
@@ -170,12 +176,12 @@ def _stretches(body, rng):
     return result
 
 
-def _pose(body, rng):
+def _pose(body, acts, rng):
     """Matrices (active, 3, 3) and offsets (active, 3): a point of joint k goes to matrices[k] @ point + offsets[k]."""
     turn = rotations(_rotation_vectors(body, rng))
     if body.plan == words.PLAN["upright"] and rng.rand() < 0.6:
         _lifted_arms(body, rng, turn)
-    if body.plan == words.PLAN["upright"] and rng.rand() < 0.35:
+    if acts:
         _act(body, rng, turn)
     stretch = _stretches(body, rng)
     base = [_split(part)[0] for part in body.active_part]
@@ -194,8 +200,8 @@ def _pose(body, rng):
     return matrices, position - np.einsum("kab,kb->ka", matrices, body.active)
 
 
-def _posed(body, rng):
-    matrices, offsets = _pose(body, rng)
+def _posed(body, acts, rng):
+    matrices, offsets = _pose(body, acts, rng)
     blended = (body.weights @ matrices.reshape(len(matrices), 9)).reshape(-1, 3, 3)
     points = np.einsum("nab,nb->na", blended, body.points) + body.weights @ offsets
     normals = unit(np.einsum("nab,nb->na", blended, body.normals))
@@ -205,7 +211,8 @@ def _posed(body, rng):
     active = move(body.active, np.arange(len(matrices)))
     roles = (1 - body.role_fraction) * active[body.role_first] + body.role_fraction * active[body.role_second]
     return _Cloud(points, normals, body.pieces.copy(), body.part.copy(), joints[bone], ends[bone],
-                  np.ones(len(points), bool), body.flesh, roles, body.has.copy(), body.fingers.copy())
+                  np.ones(len(points), bool), body.flesh, np.arange(len(points)), roles, body.has.copy(),
+                  body.fingers.copy())
 
 
 def _lose_parts(cloud, body, rng):
@@ -218,6 +225,15 @@ def _lose_parts(cloud, body, rng):
         gone = [index for part, index in words.PART.items() if part.startswith(lost)]
         if cloud.has[names].any() and _keep_most(cloud, ~np.isin(cloud.part, gone)):
             cloud.has[names] = False
+
+
+def _lose_fingers(cloud, body, rng):
+    """Mittens: all fingers of some hands are not there, and neither are their roles."""
+    for hand, side in enumerate(words.SIDES):
+        finger = body.finger[side][body.bone]
+        if finger.any() and rng.rand() < 0.8 and _keep_most(cloud, ~finger[cloud.index]):
+            cloud.fingers[hand] = 0
+            cloud.has[[k for k, role in enumerate(words.ROLES) if role.startswith("finger") and role.endswith(side)]] = False
 
 
 LIMBS = (("fore_",), ("hind_",), ("head", "neck", "jaw", "ear"))  # roles and parts of what a broken body lacks
@@ -294,6 +310,7 @@ def _add(cloud, points, normals, rng, part=PROP, loose=0.8):
     cloud.pieces, cloud.part = join(cloud.pieces, pieces), join(cloud.part, np.full(count, part))
     cloud.start, cloud.end = join(cloud.start, points), join(cloud.end, points)
     cloud.known, cloud.flesh = join(cloud.known, np.zeros(count, bool)), join(cloud.flesh, np.zeros(count))
+    cloud.index = join(cloud.index, np.full(count, -1))
 
 
 def _of(cloud, *parts):
@@ -378,15 +395,57 @@ def _pack(cloud, size, count, rng):
     _add(cloud, at + outward * half.min() + (points * half) @ turn.T, normals @ turn.T, rng)
 
 
-def _plinth(cloud, size, count, rng):
-    """A flat base below the body, or ground."""
-    low, middle = cloud.points.min(0), (cloud.points.max(0) + cloud.points.min(0)) / 2
-    reach = size * rng.uniform(0.1, 0.35)
-    radius, angle = reach * np.sqrt(rng.rand(count)), rng.rand(count) * 2 * np.pi
-    top = rng.rand(count) < 0.6
-    height = np.where(top, low[1], low[1] - size * rng.uniform(0.005, 0.05))
-    points = np.stack([middle[0] + radius * np.cos(angle), height, middle[2] + radius * np.sin(angle)], 1)
-    _add(cloud, points, np.where(top[:, None], [0, 1.0, 0], [0, -1.0, 0]), rng)
+def _block_points(low, high, turn, round_one, count, rng):
+    """Points and normals of a box, or of a cylinder along y, that is turned about y."""
+    half = (high - low) / 2
+    areas = np.array([half[1] * half[2], half[0] * half[2], half[0] * half[1]])
+    face, sign = rng.choice(3, count, p=areas / areas.sum()), rng.choice([-1.0, 1.0], count)
+    points = rng.uniform(-1, 1, (count, 3))
+    points[np.arange(count), face] = sign
+    normals = np.zeros((count, 3))
+    normals[np.arange(count), face] = sign
+    if round_one:
+        angle = rng.rand(count) * 2 * np.pi
+        ring = np.stack([np.cos(angle), np.sin(angle)], 1)
+        caps = face == 1
+        points[:, [0, 2]] = ring * np.where(caps, np.sqrt(rng.rand(count)), 1)[:, None]
+        normals[~caps] = 0
+        normals[~caps, 0], normals[~caps, 2] = ring[~caps].T
+    return (low + high) / 2 + (points * half) @ turn.T, unit(normals / half) @ turn.T
+
+
+def _support(cloud, size, count, rng):
+    """What a body stands on, sits on or leans on, mostly of one piece with it: a plinth, a seat, a stump."""
+    body = cloud.points[cloud.index >= 0]
+    low, high = body.min(0), body.max(0)
+    kind = rng.choice(["plinth", "plinth", "seat", "stump"])
+    if kind == "plinth":
+        middle, reach = (low + high)[[0, 2]] / 2, (high - low)[[0, 2]] / 2 * rng.uniform(0.4, 1.1, 2)
+        top, bottom = low[1] + size * rng.uniform(0, 0.03), low[1] - size * rng.uniform(0.01, 0.12)
+    else:
+        under = _of(cloud, "trunk") if kind == "seat" else np.flatnonzero(cloud.index >= 0)
+        if len(under) < 8:
+            return
+        at = cloud.points[rng.choice(under)]
+        middle, reach = at[[0, 2]] + rng.randn(2) * 0.04 * size, size * rng.uniform(0.04, 0.16, 2)
+        bottom = low[1]
+        top = np.quantile(cloud.points[under, 1], 0.08) if kind == "seat" else rng.uniform(bottom, at[1]) + 0.05 * size
+    corners = np.array([[middle[0] - reach[0], bottom, middle[1] - reach[1]],
+                        [middle[0] + reach[0], max(top, bottom + 0.01 * size), middle[1] + reach[1]]])
+    half = (corners[1] - corners[0]) / 2
+    area = 8 * (half[0] * half[1] + half[1] * half[2] + half[0] * half[2])
+    turn, round_one = rotations(np.array([[0, rng.rand() * np.pi, 0]]))[0].astype(float), rng.rand() < 0.5
+    count = int(np.clip(len(body) * area / (SURFACE * size**2), count, len(body)))
+    points, normals = _block_points(*corners, turn, round_one, count, rng)
+    if rng.rand() < 0.5:  # rock
+        points = points + normals * (rng.randn(count) * size * 0.008)[:, None]
+        normals = unit(normals + rng.randn(count, 3) * 0.2)
+    local = np.abs((cloud.points - corners.mean(0)) @ turn) / half
+    inside = (local < 1).all(1) if not round_one else (np.hypot(local[:, 0], local[:, 2]) < 1) & (local[:, 1] < 1)
+    if inside.mean() > 0.3:
+        return
+    _keep_most(cloud, ~inside)
+    _add(cloud, points, normals, rng, loose=0.25)
 
 
 def _debris(cloud, size, count, rng):
@@ -398,7 +457,7 @@ def _debris(cloud, size, count, rng):
         _add(cloud, centre + directions * size * rng.uniform(0.004, 0.03), directions, rng, loose=1.0)
 
 
-PROPS = ((_held, 5), (_hat, 4), (_cape, 2), (_robe, 3), (_pack, 3), (_plinth, 2), (_debris, 1))
+PROPS = ((_held, 5), (_hat, 4), (_cape, 2), (_robe, 3), (_pack, 3), (_support, 3), (_debris, 1))
 PROP_ODDS = np.array([odds for _, odds in PROPS]) / sum(odds for _, odds in PROPS)
 
 
@@ -462,15 +521,21 @@ def mirrored(sample, rng):
 
 def vary(body, rng):
     """A training sample."""
-    cloud = _posed(body, rng)
+    acts = body.plan == words.PLAN["upright"] and rng.rand() < 0.45
+    cloud = _posed(body, acts, rng)
     _lose_parts(cloud, body, rng)
+    if rng.rand() < 0.15:
+        _lose_fingers(cloud, body, rng)
     if rng.rand() < 0.4:
         _thicken(cloud, rng)
     if rng.rand() < 0.4:
         _bend(cloud, rng)
     if rng.rand() < 0.35:
         _dress(cloud, body, rng)
-    if rng.rand() < 0.06:
+    if acts and rng.rand() < 0.35:
+        size = np.linalg.norm(np.ptp(cloud.points, axis=0))
+        _support(cloud, size, len(body.points) // 30, rng)
+    if rng.rand() < 0.1:
         _break(cloud, rng)
     _damage(cloud, rng)
     _transform(cloud, np.diag(np.exp(rng.randn(3) * 0.1)))
