@@ -236,20 +236,22 @@ def _lose_fingers(cloud, body, rng):
             cloud.has[[k for k, role in enumerate(words.ROLES) if role.startswith("finger") and role.endswith(side)]] = False
 
 
-LIMBS = (("fore_",), ("hind_",), ("head", "neck", "jaw", "ear"))  # roles and parts of what a broken body lacks
+# What a broken body lacks: beginnings of the names of roles and parts. A stump may be left.
+LIMBS = (("fore_",), ("fore_middle", "fore_lower", "fore_end"), ("hind_",), ("hind_middle", "hind_lower", "hind_end"),
+         ("head", "neck", "jaw", "ear"))
 
 
 def _break(cloud, rng):
     """Half bodies, busts, torsos: limbs or all beyond a plane are not there, and neither are the roles."""
-    if rng.rand() < 0.4:
+    if rng.rand() < 0.6:
         lost = LIMBS[rng.randint(len(LIMBS))]
-        side = rng.choice(["", ".L", ".R"]) if lost[0].endswith("_") else ""
+        side = rng.choice(["", "", ".L", ".R"]) if lost[0] != "head" else ""
         is_lost = lambda name: name.startswith(lost) and name.endswith(side)
-        fingers = lambda name: lost == ("fore_",) and name.startswith("finger") and name.endswith(side)
+        fingers = lambda name: lost[0].startswith("fore") and name.startswith("finger") and name.endswith(side)
         gone = np.array([is_lost(name) or fingers(name) for name in words.ROLES])
         if _keep_most(cloud, ~np.isin(cloud.part, [k for name, k in words.PART.items() if is_lost(name)])):
             cloud.has &= ~gone
-            if lost == ("fore_",):
+            if lost[0].startswith("fore"):
                 cloud.fingers[[side != ".R", side != ".L"]] = 0
         return
     normal = np.array([0, rng.choice([-1, 1]), 0]) if rng.rand() < 0.7 else rng.choice([-1, 1]) * np.eye(3)[rng.choice([0, 2])]
@@ -535,7 +537,7 @@ def vary(body, rng):
     if acts and rng.rand() < 0.35:
         size = np.linalg.norm(np.ptp(cloud.points, axis=0))
         _support(cloud, size, len(body.points) // 30, rng)
-    if rng.rand() < 0.1:
+    if rng.rand() < 0.16:
         _break(cloud, rng)
     _damage(cloud, rng)
     _transform(cloud, np.diag(np.exp(rng.randn(3) * 0.1)))
