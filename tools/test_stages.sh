@@ -455,6 +455,11 @@ python_module() {
     PYTHONPATH=build/release/python LIMBER_PROGRAM=build/release/limber counted bindings/python/tests/run.sh "$output/python"
 }
 
+# Training takes hours: its steps are tried on a few bodies.
+training() {
+  need "${packages_learn[@]}" && counted /usr/bin/python3 tools/learn/run_tests.py
+}
+
 # What is made for others to install.
 make_packages() {
   need "${packages_installers[@]}" && tools/make_packages.sh build/release build/packages &&
@@ -605,7 +610,7 @@ all_stages() {
 release_stages() {
   local packages=("${packages_tests[@]}")
   [ -n "$quick" ] || packages+=("${packages_wasm[@]}" "${packages_node[@]}")
-  [ -z "$all" ] || packages+=("${packages_bench[@]}" "${packages_sanitize[@]}" "${packages_python[@]}")
+  [ -z "$all" ] || packages+=("${packages_bench[@]}" "${packages_sanitize[@]}" "${packages_python[@]}" "${packages_learn[@]}")
   stage "packages" need $(printf '%s\n' "${packages[@]}" | LC_ALL=C sort -u)
   stage "release build, g++ with warnings as errors" build_release
   stage "types of one name" check "two types of one name (tests/type_names.sh)" tests/type_names.sh
@@ -648,6 +653,7 @@ remaining_stages() {
 wasm_smoke WebAssembly in Node against the native program
 result_hashes main results by their hashes, natively and as WebAssembly
 python_module module for Python
+training training of the networks that read shapes
 surfaces_in_three USD in three.js
 avatars_in_three VRM in three-vrm
 fbx_in_three FBX in three.js
