@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+import reader
 import samples
 import vocabulary as words
 
@@ -233,7 +234,8 @@ def _lose_fingers(cloud, body, rng):
         finger = body.finger[side][body.bone]
         if finger.any() and rng.rand() < 0.8 and _keep_most(cloud, ~finger[cloud.index]):
             cloud.fingers[hand] = 0
-            cloud.has[[k for k, role in enumerate(words.ROLES) if role.startswith("finger") and role.endswith(side)]] = False
+            is_finger = [role.startswith("finger") and role.endswith(side) for role in words.ROLES]
+            cloud.has[is_finger] = False
 
 
 # What a broken body lacks: beginnings of the names of roles and parts. A stump may be left.
@@ -512,13 +514,11 @@ def _pins(has, y, rng):
 
 def mirrored(sample, rng):
     """The sample in the mirror, with other pins: as good a sample, and drawn for nothing."""
-    flip = np.array([-1, 1, 1], "f4")
-    inputs = sample.inputs.copy()
-    inputs[:, :9] *= np.tile(flip, 3)  # position, normal, ball's centre
-    y, has = sample.y[words.MIRROR_ROLE] * flip, sample.has[words.MIRROR_ROLE]
+    inputs = reader.mirrored_inputs(sample.inputs)
+    y, has = sample.y[words.MIRROR_ROLE] * reader.MIRROR, sample.has[words.MIRROR_ROLE]
     pin_roles, pin_positions = _pins(has > 0, y, rng)
-    return Sample(inputs, y, has, words.MIRROR_PART[sample.part], sample.bone * np.tile(flip, 2), sample.bone_known,
-                  sample.plan, sample.fingers[::-1].copy(), pin_roles.astype("i8"), pin_positions)
+    return Sample(inputs, y, has, words.MIRROR_PART[sample.part], sample.bone * np.tile(reader.MIRROR, 2),
+                  sample.bone_known, sample.plan, sample.fingers[::-1].copy(), pin_roles.astype("i8"), pin_positions)
 
 
 def vary(body, rng):

@@ -12,7 +12,7 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kTrunkRoles = 4, kTailRoles = 4, kWingRoles = 3;  // along each, from where it is attached to its end
+constexpr std::size_t kTrunkRoles = 4, kTailRoles = 4, kWingRoles = 3;  // along each, from where it is attached
 constexpr std::size_t kFingerRoles = 3, kFingers = 5, kFins = 2;
 
 // A joint of a chain that is that of a role.
