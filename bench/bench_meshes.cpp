@@ -3,11 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
-#include <utility>
 
 #include "limber/core/text/numbers.h"
-#include "limber/rigging/figure/testing/figure_body.h"
 
 namespace limber::bench {
 
@@ -57,31 +54,7 @@ void fitInto(TriMesh& mesh, double side) {
   }
 }
 
-// Each triangle in four, by the middles of its sides.
-TriMesh subdivided(const TriMesh& mesh) {
-  TriMesh finer;
-  finer.positions = mesh.positions;
-  std::map<std::pair<Index, Index>, Index> middles;
-  const auto middle = [&](Index a, Index b) {
-    const auto [entry, isNew] = middles.try_emplace(std::minmax(a, b), finer.vertexCount());
-    if (isNew) finer.positions.push_back(0.5f * (mesh.positions[a] + mesh.positions[b]));
-    return entry->second;
-  };
-  for (const auto& [a, b, c] : mesh.triangles) {
-    const Index ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
-    finer.triangles.insert(finer.triangles.end(), {{a, ab, ca}, {b, bc, ab}, {c, ca, bc}, {ab, bc, ca}});
-  }
-  return finer;
-}
-
 }  // namespace
-
-TriMesh statue(Index vertexCount) {
-  TriMesh mesh = testing::statueOf(testing::crouchingFigure());
-  while (mesh.vertexCount() < vertexCount) mesh = subdivided(mesh);
-  fitInto(mesh, 1);
-  return mesh;
-}
 
 TriMesh creature(Index vertexCount, bool symmetric) {
   const Index rows = std::max<Index>(4, static_cast<Index>(std::sqrt(vertexCount / 2.0)));

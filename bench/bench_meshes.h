@@ -9,10 +9,6 @@ namespace limber::bench {
 // mirror plane unless `symmetric`, and its vertices are stored in rows.
 TriMesh creature(Index vertexCount, bool symmetric = false);
 
-// A person who crouches on a block, no side like the other, of that many vertices at least and four times as many at
-// most; longest side 1.
-TriMesh statue(Index vertexCount);
-
 // Creatures of 100 vertices or so in a cloud, each a piece of its own, together about that many vertices.
 TriMesh swarm(Index vertexCount);
 

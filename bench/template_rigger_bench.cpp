@@ -1,10 +1,10 @@
-// The template rigger over growing models: measuring the body, and the whole fit of each template.
+// The template rigger over growing models: measuring the body, and the whole fit of a template by name and of the
+// likeliest.
 #include <benchmark/benchmark.h>
 
 #include "bench_meshes.h"
 #include "limber/core/progress.h"
-#include "limber/rigging/figure/figure_search.h"
-#include "limber/rigging/figure/testing/figure_body.h"
+#include "limber/rigging/body/body_volume.h"
 #include "limber/rigging/template_rigger.h"
 
 namespace limber::bench {
@@ -17,7 +17,8 @@ void measure(benchmark::State& state) {
   state.counters["vertices"] = mesh.vertexCount();
 }
 
-void fit(benchmark::State& state, const TriMesh& mesh, const char* name) {
+void fit(benchmark::State& state, const char* name) {
+  const TriMesh mesh = creature(static_cast<Index>(state.range(0)), true);
   RigOptions options;
   options.templateName = name;
   for (auto _ : state) {
@@ -27,33 +28,14 @@ void fit(benchmark::State& state, const TriMesh& mesh, const char* name) {
   state.counters["vertices"] = mesh.vertexCount();
 }
 
-void fitCreature(benchmark::State& state, const char* name) {
-  fit(state, creature(static_cast<Index>(state.range(0)), true), name);
-}
-
-// Found as a figure only after its embedding is in doubt: the slowest path through the rigger.
-void fitStatue(benchmark::State& state) {
-  fit(state, statue(static_cast<Index>(state.range(0))), "humanoid");
-}
-
-void figure(benchmark::State& state) {
-  const BodyVolume body = measureBody(testing::statueOf(testing::crouchingFigure()));
-  for (auto _ : state) {
-    Progress progress;
-    benchmark::DoNotOptimize(findFigure(body, {}, progress));
-  }
-}
-
 void growing(benchmark::internal::Benchmark* bench) {
   for (const std::int64_t vertices : {10000, 100000, 1000000}) bench->Arg(vertices);
   bench->Unit(benchmark::kMillisecond)->UseRealTime();
 }
 
 BENCHMARK(measure)->Name("templateMeasureBody")->Apply(growing);
-BENCHMARK(figure)->Name("templateFindFigure")->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK_CAPTURE(fitCreature, humanoid, "humanoid")->Name("templateRigHumanoid")->Apply(growing);
-BENCHMARK_CAPTURE(fitCreature, automatic, "auto")->Name("templateRigAuto")->Apply(growing);
-BENCHMARK(fitStatue)->Name("templateRigStatue")->Apply(growing);
+BENCHMARK_CAPTURE(fit, humanoid, "humanoid")->Name("templateRigHumanoid")->Apply(growing);
+BENCHMARK_CAPTURE(fit, automatic, "auto")->Name("templateRigAuto")->Apply(growing);
 
 }  // namespace
 

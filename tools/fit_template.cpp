@@ -21,6 +21,7 @@
 #include "limber/document/scene/geometry.h"
 #include "limber/evaluate/skin/skinned_model.h"
 #include "limber/geometry/mesh/prepare.h"
+#include "limber/reading/shape_weights.h"
 #include "limber/rigging/template_rigger.h"
 #include "limber/rigging/templates/humanoid_landmarks.h"
 #include "limber/rigging/templates/joints_between.h"
@@ -69,7 +70,7 @@ FittedCharacter readCharacter(const std::filesystem::path& file) {
   const std::string stem = file.stem().string();
   character.maker = stem.substr(0, stem.find('_'));
   character.body = measureBody(prepared.mesh);
-  character.fit = fitTemplate(findTemplate("humanoid"), prepared.mesh, character.body, {});
+  character.fit = fitTemplate("humanoid", prepared.mesh, *shapeWeights());
   const std::vector<Affine> globals = restGlobals(skeleton);
   for (const HumanoidJoint& named : humanoidJoints(skeleton)) {
     const std::optional<Index> joint = character.fit.skeleton.find(named.bone);
@@ -82,8 +83,8 @@ FittedCharacter readCharacter(const std::filesystem::path& file) {
 
 double errorOf(const FittedCharacter& character, const HumanoidProportions& proportions) {
   const TemplateFit& fit = character.fit;
-  std::vector<Vec3> positions = fit.embedding.positions;
-  refineHumanoid(fit.skeleton, character.body, fit.frame, fit.pins, positions, proportions);
+  std::vector<Vec3> positions = fit.positions;
+  refineHumanoid(fit.skeleton, character.body, fit.frame, TemplatePins(positions.size()), positions, proportions);
   placeBetween(fit.skeleton, positions);
   double sum = 0;
   for (const auto& [joint, position] : character.truth)

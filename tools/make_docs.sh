@@ -188,7 +188,7 @@ if [ -d "$characters" ]; then
     --each $work/check_rigs.tsv -o $work/check_rigs.md --quiet
   named=$(awk -F'\t' 'NR > 1 { printf("%s%s (%s)", between, $3, $6 ? "handles" : $4); between = ", " }' \
     $work/check_rigs.tsv | fold -s -w 118 | sed 's/ $//')
-  table="$named" perl -0pi -e 's/(<!-- made by [^\n]*: check -->\n).*(<!-- end of check -->)/$1\n$ENV{table}.\n\n$2/s' docs/template-rigs.md
+  table="$named" perl -0pi -e 's/(<!-- made by [^\n]*: check -->\n).*(<!-- end of check -->)/$1\n![Characters with their bones](images\/check_rigs.png)\n\n$ENV{table}.\n\n$2/s' docs/template-rigs.md
   sed -i '/^\*\*People, /,$d' docs/template-rigs.md
   {
     echo "**People, --template humanoid**" && echo

@@ -312,7 +312,7 @@ void addRigCommand(CLI::App& program) {
       ->type_name("NAME");
   command
       ->add_option("--pin", options->pins,
-                   "where a joint of the template must be, as JOINT=x,y,z in the file's space; several tell a pose")
+                   "where a joint of the template must be, as JOINT=x,y,z in the file's space; others follow")
       ->type_name("PIN")
       ->allow_extra_args(false);
   command->add_option("--up", request.up, "the model's up, for a template, as +y (default: found)")->type_name("AXIS");

@@ -126,7 +126,7 @@ import createEngine from './limber_engine.mjs';
  *           shapeWeights?: () => Uint8Array, onInstance?: (instance: WebAssembly.Instance) => void,
  *           optionNames?: 'javascript' | 'program' }} [given]
  *   codecs may be put in later; rest: gives the other part of an engine in two (split_engine.mjs), asked once, by the first
- *   call that needs it; shapeWeights: gives shapes.lrd, asked by the first call that finds no template; optionNames: how errors name
+ *   call that needs it; shapeWeights: gives shapes.lrd, asked by the first call that fits a template; optionNames: how errors name
  *   options, existingRig: 'replace' or --replace-rig; what onProgress and shapeWeights throw stops the call, and is thrown by it
  */
 export async function loadLimber(wasm, given = {}) {

@@ -25,8 +25,8 @@ constexpr RiggerMethod kMethods[] = {
     {"curve-skeleton", "joints along curves through the middle of limbs, any number of them",
      "Au, Tai, Chu, Cohen-Or, Lee: Skeleton Extraction by Mesh Contraction, 2008", &rigSurface<rigWithCurveSkeleton>,
      false},
-    {"template", "a named skeleton fitted into the model", "after Baran, Popović: Pinocchio, 2007",
-     &rigSurface<rigWithTemplate>, true},
+    {"template", "a named skeleton fitted into the model, as networks read its shape", "", &rigSurface<rigWithTemplate>,
+     true},
     {kPropRigger, "one joint for all of it: a thing that does not bend", "", &rigSurface<rigAsProp>, false},
 };
 

@@ -41,7 +41,7 @@ struct RigOptions {
   std::shared_ptr<RigMemory> memory = {};
 
   // For riggers that fit a named skeleton.
-  std::string templateName = "auto";              // auto: the one that fits best
+  std::string templateName = "auto";              // auto: that of the likeliest kind of body
   bool mayAbstain = true;                         // auto: handles where none is likely (kLikelyTemplate)
   std::optional<Skeleton> templateSkeleton = {};  // a user's own, instead of that
   std::optional<Vec3> up = {}, front = {};        // along an axis of the mesh's space; none: found
@@ -52,16 +52,16 @@ struct RigOptions {
 // The confidence from which on a template is taken for what the model is; below it is a guess.
 inline constexpr double kLikelyTemplate = 0.4;
 
-// A template that was tried, and how sure it is that the model is of its kind: 0 to 1.
+// A template, and how sure it is that the model is of its kind and has its limbs: 0 to 1.
 struct TemplateMatch {
   std::string name;
   double confidence = 0;
 };
 
-// Of an unsure template, joints to ask a user for.
+// Joints in doubt that a user is asked for.
 inline constexpr std::size_t kMaxDoubts = 3;
 
-// The confidence from which on a template is taken to be right in its limbs, too.
+// The confidence from which on the model is taken to stand as the template was fitted.
 inline constexpr double kSureTemplate = 0.75;
 
 // A count of handles worth choosing.
@@ -74,9 +74,9 @@ struct AutoRig {
   Skeleton skeleton;         // in the space of the mesh
   bool isAbstained = false;  // it has handles instead of a template (RigOptions::mayAbstain)
   std::vector<HandleSuggestion> suggestions;
-  std::vector<TemplateMatch> matches;  // likeliest first: the one that was fitted, unless it abstained
-  // Joints at the ends of limbs whose pins would settle most of an unsure template, first things first, kMaxDoubts at
-  // most; none where it is sure, has handles, or is a user's own skeleton of a person.
+  std::vector<TemplateMatch> matches;  // of "auto" all kinds, likeliest first; else the one that was asked for
+  // Joints at the ends of limbs that the body seems to lack or that may be far off, first things first, kMaxDoubts at
+  // most; none where the rig has handles.
   std::vector<std::string> doubts;
   std::optional<Vec3> up;  // of the model as it was fitted
   Warnings warnings;

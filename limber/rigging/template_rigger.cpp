@@ -2,58 +2,50 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <map>
 
 #include <fmt/format.h>
 
+#include "limber/character/anatomy/anatomy.h"
 #include "limber/core/known_error.h"
 #include "limber/core/text/numbers.h"
 #include "limber/geometry/mesh/model_box.h"
 #include "limber/geometry/surface/stray_pieces.h"
+#include "limber/reading/learned_reading.h"
 #include "limber/reading/shape_weights.h"
 #include "limber/rigging/body/body_volume.h"
-#include "limber/rigging/figure/figure_search.h"
-#include "limber/rigging/person_template.h"
-#include "limber/rigging/read_template.h"
-#include "limber/rigging/shape/plan_fit.h"
-#include "limber/rigging/shape/shape_reading.h"
+#include "limber/rigging/roles/body_kinds.h"
+#include "limber/rigging/roles/role_reading.h"
 #include "limber/rigging/sphere_mesh_rigger.h"
-#include "limber/rigging/templates/arm_flatness.h"
-#include "limber/rigging/templates/bent_template.h"
-#include "limber/rigging/templates/figure_fit.h"
-#include "limber/rigging/templates/finger_count.h"
 #include "limber/rigging/templates/humanoid_landmarks.h"
 #include "limber/rigging/templates/joints_between.h"
-#include "limber/rigging/templates/pose_search.h"
+#include "limber/rigging/templates/limb_chains.h"
 #include "limber/rigging/templates/quadruped_landmarks.h"
-#include "limber/rigging/templates/template_embedding.h"
 
 namespace limber {
 
-// What all templates are tried on.
+// What does not depend on the skeleton that is asked for.
 struct MeasuredModel {
   Index vertices = 0, triangles = 0;  // of the mesh
   std::optional<Vec3> up, front;      // as they were given
-  std::optional<TriMesh> cleared;     // of stray pieces; none where the mesh has none
+  std::shared_ptr<const ReadingWeights> weights;
+  std::optional<TriMesh> cleared;  // of stray pieces; none where the mesh has none
   BodyVolume body;
-  std::vector<AnatomicalFrame> frames;
-  std::optional<ShapeReading> shape;
+  SurfaceSamples samples;
+  AnatomicalFrame frame;
 };
 
 namespace {
 
-constexpr std::size_t kCoarseSpheres = 120;        // for a first look at every orientation
-constexpr std::size_t kFramesRefined = 2;          // after it, with all spheres
-constexpr std::size_t kVariantsRefined = 4;        // of each of these
-constexpr double kCostOfDoubt = 1.8;               // cost at which confidence is a half
-constexpr double kOtherHands = 0.05;               // cost of fingers that hands lack, or that a template lacks
-constexpr double kWings = 2;                       // cost of arms as flat as wings
-constexpr double kRoundArm = 2.5, kFlatArm = 3.5;  // times as wide as thick
-constexpr double kVoteOfShape = 8;                 // times the odds of a template that has the plan of a sure shape
-constexpr double kSureShape = 0.9;        // confidence of a shape from which on templates of other plans are not tried
-constexpr double kLongLimb = 0.1;         // heights; fingers are shorter
-constexpr double kCostOfUnmatched = 100;  // above the cost of any limb that has one
-constexpr double kMaxAsymmetry = 0.15;    // more than the most symmetric orientation, of those looked at
+constexpr double kAsymmetryScale = 0.1;   // asymmetry that counts as much as e times less probability of a stance
+constexpr double kMinProbability = 1e-3;  // of a stance
+constexpr double kUnusualUp = 0.1;        // models whose up is neither +Y nor +Z, to those whose up is one of these
+constexpr double kDoubtfulJoint = 0.05;   // expected error, heights
+constexpr double kWorthNaming = 0.01;     // confidence of a kind that is told beside the likeliest
+constexpr double kMissing = 100;          // above any error
+constexpr double kLandmarkReach = 2;      // expected errors that a landmark may lie from the reading
+constexpr double kMinReach = 0.03;        // heights
+constexpr double kTipBeyond = 0.5;        // of a bone: its end beyond the joint, where no sample tells
 
 // Each joint once, and where the model may be: the model's size beyond its box is another unit.
 void checkPins(const TriMesh& mesh, const std::vector<JointPin>& pins) {
@@ -74,6 +66,133 @@ void checkPins(const TriMesh& mesh, const std::vector<JointPin>& pins) {
   }
 }
 
+// Of those with an axis that is up and one that is front. Rows: left, up, front.
+double probabilityOf(const Mat3& axes, const LearnedStance& stance) {
+  const std::array<Mat3, kStances> rotations = stanceRotations();
+  std::size_t nearest = 0;
+  const auto likeness = [&](std::size_t i) { return rotations[i].cwiseProduct(axes).sum(); };
+  for (std::size_t i = 1; i < rotations.size(); ++i) {
+    if (likeness(i) > likeness(nearest)) nearest = i;
+  }
+  return stance.probabilities[nearest];
+}
+
+// Files have +Y or +Z up, whatever the shape says; the networks learned all 24 stances alike.
+double priorOf(const AnatomicalFrame& frame) {
+  return std::max(frame.axes(1, 1), frame.axes(1, 2)) > std::cos(kPi / 4) - 1e-6 ? 1 : kUnusualUp;
+}
+
+AnatomicalFrame likeliestFrame(const std::vector<AnatomicalFrame>& frames, const LearnedStance& stance) {
+  const auto likelihood = [&](const AnatomicalFrame& frame) {
+    const double probability = priorOf(frame) * std::max(probabilityOf(frame.axes, stance), kMinProbability);
+    return std::log(probability) - frame.asymmetry / kAsymmetryScale;
+  };
+  return *std::max_element(frames.begin(), frames.end(), [&](const AnatomicalFrame& a, const AnatomicalFrame& b) {
+    return likelihood(a) < likelihood(b);
+  });
+}
+
+std::shared_ptr<const MeasuredModel> measure(const TriMesh& mesh, const RigOptions& options,
+                                             const std::shared_ptr<const ReadingWeights>& weights) {
+  if (options.memory && options.memory->measured) {
+    const MeasuredModel& known = *options.memory->measured;
+    const bool isSame = known.vertices == mesh.vertexCount() && known.triangles == mesh.triangleCount();
+    const bool isAskedAlike = known.up == options.up && known.front == options.front && known.weights == weights;
+    if (isSame && isAskedAlike) return options.memory->measured;
+  }
+  auto model = std::make_shared<MeasuredModel>();
+  model->vertices = mesh.vertexCount();
+  model->triangles = mesh.triangleCount();
+  model->up = options.up;
+  model->front = options.front;
+  model->weights = weights;
+  model->cleared = withoutStrays(mesh);
+  const TriMesh& surface = model->cleared ? *model->cleared : mesh;
+  model->body = measureBody(surface);
+  model->samples = sampleSurface(surface, weights->sampleCount());
+  model->frame = likeliestFrame(possibleFrames(surface, model->body, options.up, options.front),
+                                stanceOf(model->samples, *weights));
+  if (options.memory) options.memory->measured = model;
+  return model;
+}
+
+// ---- which skeleton
+
+RoledSkeleton templateWithRoles(std::string_view name) {
+  const TemplateSkeleton& skeleton = findTemplate(name);
+  std::vector<Vec3> positions;
+  for (const TemplateJoint& joint : skeleton.joints) positions.push_back(joint.position);
+  const Skeleton rest = standingSkeleton(skeleton, positions, {});
+  const std::vector<std::optional<RolePosition>> roles = jointRoles(rest, readAnatomy(rest));
+  // Tips are among the template's joints, and no joints of the rest pose.
+  RoledSkeleton made = {skeleton, {}};
+  Index next = 0;
+  for (TemplateJoint& joint : made.skeleton.joints) {
+    if (joint.role == TemplateRole::kTip) {
+      made.roles.push_back(made.roles[*joint.parent]);
+    } else {
+      made.roles.push_back(roles[next++]);
+      joint.role = made.roles.back() ? TemplateRole::kPlaced : TemplateRole::kBetween;
+    }
+  }
+  return made;
+}
+
+// A user's, rotated to stand as templates do.
+RoledSkeleton ownWithRoles(const Skeleton& skeleton, std::string_view name) {
+  const Anatomy anatomy = readAnatomy(skeleton);
+  Mat3 axes;
+  axes << anatomy.axes.left().transpose(), anatomy.axes.up.transpose(), anatomy.axes.front.transpose();
+  Skeleton standing = skeleton;
+  for (Joint& joint : standing.joints) {
+    if (joint.parent) continue;
+    joint.rest.translation = axes * joint.rest.translation;
+    joint.rest.rotation = Quat(axes) * joint.rest.rotation;
+  }
+  return withRoles(templateFrom(standing, name), standing, anatomy);
+}
+
+bool hasFingers(const RoleReading& reading) {
+  return reading.fingers(Side::kLeft) + reading.fingers(Side::kRight) >= 8;
+}
+
+// What a plan gets where the user leaves the choice.
+std::string kindOfPlan(std::string_view plan, const RoleReading& reading) {
+  if (plan == "upright") return hasFingers(reading) ? "humanoid-fingers" : "humanoid";
+  if (plan == "four") return "quadruped";
+  if (plan == "bird") return "bird";
+  if (plan == "many") return reading.has("midb_upper.L") && reading.has("midb_upper.R") ? "spider" : "insect";
+  for (const BodyKind& kind : bodyKinds()) {
+    if (kind.plan == plan) return std::string(kind.name);
+  }
+  return {};
+}
+
+std::string_view planOfKind(std::string_view name) {
+  if (const BodyKind* kind = findBodyKind(name)) return kind->plan;
+  if (name == "quadruped") return "four";
+  return name == "bird" ? "bird" : "upright";
+}
+
+// The plan that a user's skeleton has; none where it shows no limbs.
+std::optional<std::string_view> planOf(const Anatomy& anatomy) {
+  const Index legs = anatomy.pairsOf(PartKind::kLeg);
+  const bool hasWings = anatomy.pairsOf(PartKind::kWing) > 0, hasArms = anatomy.pairsOf(PartKind::kArm) > 0;
+  if (legs > 2) return "many";
+  if (legs == 2) return hasWings ? "winged_four" : "four";
+  if (hasWings && !hasArms) return "bird";
+  if (legs == 1 || hasArms) return "upright";
+  if (anatomy.pairsOf(PartKind::kFin) > 0) return "swims";
+  return std::nullopt;
+}
+
+RoledSkeleton skeletonNamed(std::string_view name, const RoleReading& reading) {
+  const BodyKind* kind = findBodyKind(name);
+  return kind ? skeletonOfKind(*kind, reading) : templateWithRoles(name);
+}
+
+// ---- its joints in the body
+
 TemplatePins pinsIn(const TemplateSkeleton& skeleton, const AnatomicalFrame& frame, const std::vector<JointPin>& pins) {
   TemplatePins positions(skeleton.jointCount());
   for (const JointPin& pin : pins) {
@@ -89,201 +208,136 @@ TemplatePins pinsIn(const TemplateSkeleton& skeleton, const AnatomicalFrame& fra
   return positions;
 }
 
-// A model as templates are tried on it.
-struct Model {
-  const BodyVolume& body;
-  const std::vector<AnatomicalFrame>& frames;  // orientations, likeliest first
-  const std::optional<Vec3> front;             // if it is known
-};
-
-struct Embedded {
-  TemplateFit fit;
-  TemplateEmbedder embedder;
-};
-
-// Looks at every orientation with some of the spheres, and at the best ones with all.
-Embedded bestEmbedding(const TemplateSkeleton& skeleton, const Model& model, const std::vector<JointPin>& pins) {
-  const BodyVolume& body = model.body;
-  const std::vector<AnatomicalFrame>& frames = model.frames;
-  double least = 1;
-  for (const AnatomicalFrame& frame : frames) least = std::min(least, frame.asymmetry);
-  const std::vector<TemplateVariant> standing = templateVariants(skeleton);
-  // For each orientation the variants, best first.
-  struct Look {
-    AnatomicalFrame frame;
-    double cost;
-    std::vector<TemplateVariant> variants;
-  };
-  std::vector<Look> looks;
-  for (const AnatomicalFrame& frame : frames) {
-    if (frame.asymmetry > least + kMaxAsymmetry) continue;
-    const TemplatePins positions = pinsIn(skeleton, frame, pins);
-    std::vector<TemplateVariant> variants = standing;
-    const std::vector<TemplateVariant> bent = bentToPins(skeleton, positions);
-    variants.insert(variants.end(), bent.begin(), bent.end());
-    TemplateEmbedder coarse(skeleton, body, frame, positions, {kCoarseSpheres, false});
-    const std::vector<TemplateFit> fits = fitVariants(variants, coarse);
-    std::vector<std::size_t> order(fits.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return cheaper(fits[a], fits[b]); });
-    order.resize(std::min(order.size(), kVariantsRefined));
-    Look look = {frame, fits[order.front()].cost, {}};
-    for (const std::size_t v : order) look.variants.push_back(variants[v]);
-    looks.push_back(std::move(look));
+// What pins say of the reading.
+std::map<std::string, Vec3> knownRoles(const RoledSkeleton& made, const TemplatePins& pins) {
+  std::map<std::string, Vec3> known;
+  for (std::size_t j = 0; j < pins.size(); ++j) {
+    if (made.skeleton.joints[j].role == TemplateRole::kTip) continue;  // its role is that of the joint above
+    if (pins[j] && made.roles[j] && made.roles[j]->isRole()) known[made.roles[j]->from] = *pins[j];
   }
-  std::stable_sort(looks.begin(), looks.end(), [](const Look& a, const Look& b) { return a.cost < b.cost; });
-  std::optional<TemplateFit> best;
-  std::optional<TemplateEmbedder> bestEmbedder;
-  for (std::size_t i = 0; i < std::min(looks.size(), kFramesRefined); ++i) {
-    const AnatomicalFrame& frame = looks[i].frame;
-    TemplateEmbedder embedder(skeleton, body, frame, pinsIn(skeleton, frame, pins), {body.spheres.size(), true});
-    std::vector<TemplateFit> fits = fitVariants(looks[i].variants, embedder);
-    TemplateFit& fit = *std::min_element(fits.begin(), fits.end(), cheaper);
-    if (best && !cheaper(fit, *best)) continue;
-    best = std::move(fit);
-    bestEmbedder = std::move(embedder);
+  return known;
+}
+
+bool isMissing(const RoleReading& reading, const RolePosition& role) {
+  return !reading.has(role.from) && !reading.has(role.to);
+}
+
+// Beyond the last joint of a limb: the end of its bone.
+Vec3 tipOf(const RoledSkeleton& made, Index tip, const RoleReading& reading, const std::vector<Vec3>& positions) {
+  const Index joint = made.skeleton.joints[tip].parent.value();
+  const std::optional<Index> above = made.skeleton.joints[joint].parent;
+  const Vec3 bone = above ? Vec3(positions[joint] - positions[*above]) : Vec3(0, 0.1, 0);
+  if (made.roles[joint]) {
+    if (const auto end = reading.boneEnd(partOfRole(made.roles[joint]->to), positions[joint])) return *end;
   }
-  return {std::move(*best), std::move(*bestEmbedder)};
+  return positions[joint] + kTipBeyond * bone;
 }
 
-// With what the body says of the limbs where they are now.
-TemplateFit judged(TemplateFit fit, const BodyVolume& body) {
-  fit.limbs = limbsIn(fit.skeleton, fit.embedding, body, fit.frame);
-  const double flat = armFlatness(fit.skeleton, fit.embedding.positions, body, fit.frame);
-  fit.cost += kWings * std::clamp((flat - kRoundArm) / (kFlatArm - kRoundArm), 0.0, 1.0);
-  return fit;
-}
-
-std::size_t missingLimbs(const std::vector<TemplateLimb>& limbs) {
-  return static_cast<std::size_t>(
-      std::count_if(limbs.begin(), limbs.end(), [](const TemplateLimb& limb) { return !limb.hasMatch; }));
-}
-
-// From the cost and the fraction of limbs that have a match: it falls fast with each missing limb.
-double confidenceOf(const TemplateFit& fit) {
-  const double placed = 1 - static_cast<double>(missingLimbs(fit.limbs)) / static_cast<double>(fit.limbs.size());
-  return placed * placed * placed / (1 + std::pow(fit.cost / kCostOfDoubt, 3.0));
-}
-
-bool isSure(const TemplateFit& fit) {
-  return confidenceOf(fit) > kSureTemplate;
-}
-
-// The person in a model, in whatever pose, for all templates.
-struct FigureOnce {
-  bool wasSought = false;
-  std::optional<MatchedFigure> figure;
-};
-
-std::optional<TemplateFit> figureFit(const TemplateSkeleton& skeleton, const Model& model,
-                                     const std::vector<JointPin>& pins, FigureOnce& once, Progress& progress) {
-  const AnatomicalFrame& frame = model.frames.front();
-  const TemplatePins positions = pinsIn(skeleton, frame, pins);
-  if (!once.wasSought) {
-    progress.step("find figure");
-    const Vec3 up = frame.axes.row(1).transpose();
-    once = {true, findFigure(model.body, {up, model.front, figurePins(skeleton, positions, frame)}, progress)};
+std::vector<Vec3> placed(RoledSkeleton& made, const RoleReading& reading, const TemplatePins& pins) {
+  std::vector<TemplateJoint>& joints = made.skeleton.joints;
+  std::vector<Vec3> positions;  // of a skeleton that is no body's: as it is, as high as the model
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    if (pins[j] && joints[j].role != TemplateRole::kTip) joints[j].role = TemplateRole::kPlaced;
+    const bool isRead = joints[j].role == TemplateRole::kPlaced && !pins[j];
+    positions.push_back(isRead ? reading.position(*made.roles[j]) : pins[j].value_or(joints[j].position));
   }
-  if (!once.figure) return {};
-  return fitOfFigure(skeleton, *once.figure, positions, frame);
-}
-
-// The template in its neutral pose; at low confidence a person in any pose; at low confidence in that, the template
-// bent.
-TemplateFit bestFit(const TemplateSkeleton& skeleton, const Model& model, const std::vector<JointPin>& pins,
-                    FigureOnce& once, Progress& progress, bool inPoses = true) {
-  progress.step("fit " + skeleton.name);
-  Embedded embedded = bestEmbedding(skeleton, model, pins);
-  TemplateFit fit = judged(embedded.fit, model.body);
-  std::optional<TemplateFit> figure;
-  if (isHumanoid(skeleton) && !fit.frame.symmetric() && !isSure(fit)) {
-    figure = figureFit(skeleton, model, pins, once, progress);
-    if (figure && isSure(*figure)) return *figure;
-  }
-  if (inPoses) {
-    progress.step("bend " + skeleton.name);
-    searchPose(embedded.embedder, embedded.fit);
-    fit = judged(std::move(embedded.fit), model.body);
-  }
-  return figure && confidenceOf(*figure) > confidenceOf(fit) ? *figure : fit;
-}
-
-// Templates of people that differ in their fingers alone fit alike: hands tell.
-void tellByFingers(const TriMesh& mesh, std::vector<TemplateFit>& fits) {
-  for (TemplateFit& fit : fits) {
-    if (!isHumanoid(fit.skeleton)) continue;
-    const auto positionOf = [&](const std::string& joint) {
-      return fit.frame.fromBody(fit.embedding.positions[fit.skeleton.find(joint).value()]);
-    };
-    std::size_t fingers = kHandWithFingers;
-    for (const std::string side : {"left", "right"}) {
-      fingers = std::min(fingers, countFingers(mesh, positionOf(side + "Hand"), positionOf(side + "HandTip")));
+  placeBetween(made.skeleton, positions);
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    if (joints[j].role != TemplateRole::kTip || pins[j]) continue;
+    if (joints[*joints[j].parent].role == TemplateRole::kPlaced) {
+      positions[j] = tipOf(made, static_cast<Index>(j), reading, positions);
     }
-    const bool has = fit.skeleton.find("leftIndexProximal").has_value();
-    if (has != (fingers == kHandWithFingers)) fit.cost += kOtherHands;
   }
+  placeBetween(made.skeleton, positions);
+  return positions;
 }
 
-// A template as it was fitted, and how sure it is that the model is of its kind.
-struct Hypothesis {
-  TemplateFit fit;
-  double vote = 0;               // of the shape, -1 to 1 (voteOf)
-  std::optional<double> byPlan;  // the confidence of what is laid along the shape's curves
+// From where the reading has the joint. A raised heel, which refineHocks takes for the foot, is another role.
+double strayed(const RolePosition& role, const RoleReading& reading, const Vec3& read, const Vec3& refined) {
+  const double distance = (refined - read).norm();
+  const std::string side = role.from.substr(role.from.size() - 2);
+  std::string other;
+  if (role.from.starts_with("hind_end")) other = "hind_hock" + side;
+  if (role.from.starts_with("hind_toes")) other = "hind_end" + side;
+  return other.empty() ? distance : std::min(distance, (refined - reading.position({other, other, 0})).norm());
+}
 
-  double confidence() const {
-    if (byPlan) return *byPlan;
-    const double own = confidenceOf(fit), odds = std::pow(kVoteOfShape, vote);
-    return odds * own / (1 + (odds - 1) * own);
+// The shape of limbs shows where their joints are; what it shows far from where the reading has them is something else.
+void refine(const RoledSkeleton& made, const BodyVolume& body, const RoleReading& reading, const TemplatePins& pins,
+            std::vector<Vec3>& positions) {
+  const std::vector<Vec3> read = positions;
+  const TemplateSkeleton& skeleton = made.skeleton;
+  refineHumanoid(skeleton, body, reading.frame(), pins, positions);
+  placeBetween(skeleton, positions);
+  refineHocks(skeleton, body, reading.frame(), pins, positions);
+  refineQuadruped(skeleton, body, reading.frame(), pins, positions);
+  for (std::size_t j = 0; j < positions.size(); ++j) {
+    if (!made.roles[j] || skeleton.joints[j].role != TemplateRole::kPlaced) continue;
+    const double reach = std::max(kLandmarkReach * reading.expectedError(*made.roles[j]), kMinReach);
+    if (strayed(*made.roles[j], reading, read[j], positions[j]) > reach) positions[j] = read[j];
   }
-};
-
-bool isQuadruped(const TemplateSkeleton& skeleton) {
-  return skeleton.find("leftFrontUpperLeg").has_value();
+  placeBetween(skeleton, positions);
 }
 
-// What the shape says of a template: 1 for it, -1 against it, 0 nothing, and between as far as its plan is sure.
-double voteOf(const ShapeReading& shape, const TemplateSkeleton& skeleton) {
-  const auto has = [&](BodyPlan plan) { return shape.plan == plan ? shape.confidence : -shape.confidence; };
-  if (isHumanoid(skeleton) && shape.plan != BodyPlan::kUnknown) return has(BodyPlan::kUpright);
-  if (isQuadruped(skeleton) && shape.plan != BodyPlan::kUnknown) return has(BodyPlan::kFourLegs);
-  if (!skeleton.find("leftUpperWing")) return 0;
-  // Birds are seen to stand on two legs, or on none that are thick enough.
-  const bool mayBeBird =
-      shape.plan == BodyPlan::kUpright || shape.plan == BodyPlan::kTwoLegs || shape.plan == BodyPlan::kUnknown;
-  if (!mayBeBird) return -shape.confidence;
-  return shape.wings() ? 1 : 0;
-}
+// ---- how sure it is, and what to say of it
 
-// Whether it is worth while to try a template where the shape is sure of what it is.
-bool mayBe(const TemplateSkeleton& skeleton, const std::optional<ShapeReading>& shape) {
-  return !shape || shape->confidence < kSureShape || voteOf(*shape, skeleton) >= 0;
-}
-
-// Those that face as the shape of a four-legged animal does, where it is surely one; else all.
-std::vector<AnatomicalFrame> framesLike(const std::optional<ShapeReading>& shape,
-                                        const std::vector<AnatomicalFrame>& frames) {
-  const bool isSure = shape && shape->plan == BodyPlan::kFourLegs && shape->confidence > kSureTemplate;
-  if (!isSure || !shape->frame.isFrontRead) return frames;
-  return {shape->frame};
-}
-
-Hypothesis hypothesisOf(TemplateFit fit, const std::optional<ShapeReading>& shape) {
-  const double vote = shape ? voteOf(*shape, fit.skeleton) : 0;
-  return {std::move(fit), vote, {}};
-}
-
-// Laid along the shape's curves, with its pins.
-Hypothesis planHypothesis(const PlanKind& kind, const ShapeReading& shape, const std::vector<JointPin>& pins) {
-  TemplateFit fit = fitPlan(kind, shape);
-  fit.pins = pinsIn(fit.skeleton, fit.frame, pins);
-  for (Index j = 0; j < fit.skeleton.jointCount(); ++j) {
-    if (!fit.pins[j]) continue;
-    fit.embedding.positions[j] = *fit.pins[j];
-    const std::optional<Index> mirror = fit.skeleton.joints[j].mirror;
-    if (mirror && !fit.pins[*mirror]) fit.embedding.positions[*mirror] = fit.pins[j]->cwiseProduct(Vec3(-1, 1, 1));
+std::vector<TemplateLimb> limbsOf(const RoledSkeleton& made, const RoleReading& reading) {
+  std::vector<TemplateLimb> limbs = limbChains(made.skeleton);
+  for (TemplateLimb& limb : limbs) {
+    bool hasRole = false, isThere = false;
+    for (const Index joint : limb.joints) {
+      // Few hands show their fingers: that they are not seen says nothing.
+      if (!made.roles[joint] || made.roles[joint]->from.starts_with("finger")) continue;
+      hasRole = true;
+      isThere = isThere || !isMissing(reading, *made.roles[joint]);
+    }
+    limb.isThere = isThere || !hasRole;
   }
-  return {std::move(fit), 0, likelihood(kind, shape)};
+  return limbs;
+}
+
+// Of the plan, and the less the more limbs the body lacks.
+double confidenceOf(double planProbability, const RoledSkeleton& made, const RoleReading& reading) {
+  const std::vector<TemplateLimb> limbs = limbsOf(made, reading);
+  double there = 0;
+  for (const TemplateLimb& limb : limbs) there += limb.isThere ? 1.0 / static_cast<double>(limbs.size()) : 0;
+  return planProbability * there * there * there;
+}
+
+std::vector<TemplateMatch> matchesOf(const RoleReading& reading, const ReadingWeights& weights) {
+  std::vector<TemplateMatch> matches;
+  for (const std::string& plan : weights.plans) {
+    const std::string kind = kindOfPlan(plan, reading);
+    if (kind.empty()) continue;
+    matches.push_back({kind, confidenceOf(reading.probability(plan), skeletonNamed(kind, reading), reading)});
+  }
+  std::stable_sort(matches.begin(), matches.end(),
+                   [](const TemplateMatch& a, const TemplateMatch& b) { return a.confidence > b.confidence; });
+  return matches;
+}
+
+// Ends of limbs whose joints may be farthest from the truth, one of each pair, first things first; those that the body
+// lacks come before all.
+std::vector<std::string> doubtsOf(const RoledSkeleton& made, const RoleReading& reading, const TemplatePins& pins) {
+  const std::vector<TemplateJoint>& joints = made.skeleton.joints;
+  struct Doubt {
+    Index joint;
+    double error;
+  };
+  std::vector<Doubt> doubts;
+  for (const TemplateLimb& limb : limbsOf(made, reading)) {
+    const Index end = limb.joints.back();
+    const std::optional<Index> mirror = joints[end].mirror;
+    if (!made.roles[end] || made.roles[end]->from.starts_with("finger")) continue;
+    if (pins[end] || (mirror && pins[*mirror]) || joints[end].name.starts_with("right")) continue;
+    doubts.push_back({end, (limb.isThere ? 0 : kMissing) + reading.expectedError(*made.roles[end])});
+  }
+  std::stable_sort(doubts.begin(), doubts.end(), [](const Doubt& a, const Doubt& b) { return a.error > b.error; });
+  std::vector<std::string> names;
+  for (const Doubt& doubt : doubts) {
+    if (names.size() < kMaxDoubts && doubt.error > kDoubtfulJoint) names.push_back(joints[doubt.joint].name);
+  }
+  return names;
 }
 
 // Pinned joints are some template's: whoever pins one has chosen.
@@ -291,145 +345,30 @@ bool leavesTheChoice(const RigOptions& options) {
   return options.templateName == "auto" && !options.templateSkeleton && options.pins.empty();
 }
 
-std::shared_ptr<const MeasuredModel> measure(const TriMesh& mesh, const RigOptions& options) {
-  if (options.memory && options.memory->measured) {
-    const MeasuredModel& known = *options.memory->measured;
-    const bool isSame = known.vertices == mesh.vertexCount() && known.triangles == mesh.triangleCount();
-    if (isSame && known.up == options.up && known.front == options.front) return options.memory->measured;
-  }
-  auto model = std::make_shared<MeasuredModel>();
-  model->vertices = mesh.vertexCount();
-  model->triangles = mesh.triangleCount();
-  model->up = options.up;
-  model->front = options.front;
-  model->cleared = withoutStrays(mesh);
-  const TriMesh& surface = model->cleared ? *model->cleared : mesh;
-  model->body = measureBody(surface);
-  model->frames = possibleFrames(surface, model->body, options.up, options.front);
-  model->shape = readShape(model->body, model->frames, options.front.has_value());
-  if (options.memory) options.memory->measured = model;
-  return model;
-}
-
-// Kinds of the shape's plan, of all or the one that is asked for.
-std::vector<Hypothesis> planHypotheses(const std::optional<ShapeReading>& shape, const PlanKind* asked,
-                                       const std::vector<JointPin>& pins) {
-  if (asked && !shape) {
-    throw Error(ErrorCode::kUnsupported,
-                "the model has no trunk between two sides that are alike, whose curves could be followed",
-                std::string(asked->name),
-                "`up` and `front` say how it stands; humanoid, quadruped and bird need neither");
-  }
-  std::vector<Hypothesis> hypotheses;
-  if (asked) {
-    hypotheses.push_back(planHypothesis(*asked, *shape, pins));
-  } else if (shape) {
-    for (const PlanKind& kind : planKinds()) {
-      if (likelihood(kind, *shape) > 0) hypotheses.push_back(planHypothesis(kind, *shape, pins));
-    }
-  }
-  return hypotheses;
-}
-
-void warnOfStrays(const TriMesh& mesh, const std::optional<TriMesh>& cleared, AutoRig& rig) {
-  if (!cleared) return;
-  rig.warnings.add("stray-pieces", "triangles that float about the model are left out of account", {},
-                   mesh.triangleCount() - cleared->triangleCount());
-}
-
-void warnOfMissingLimbs(const TemplateSkeleton& skeleton, const std::vector<TemplateLimb>& limbs, AutoRig& rig) {
-  const std::size_t missing = missingLimbs(limbs);
-  if (missing == 0) return;
-  rig.warnings.add("no-place", "limbs of the template have no place in the model", unmatchedLimbs(skeleton, limbs),
-                   missing);
-}
-
-void warn(const Hypothesis& hypothesis, AutoRig& rig) {
-  const TemplateFit& fit = hypothesis.fit;
-  warnOfMissingLimbs(fit.skeleton, fit.limbs, rig);
-  if (hypothesis.confidence() < kLikelyTemplate) {
-    rig.warnings.add(
-        "low-confidence",
-        fmt::format("the model hardly looks like the template (confidence {:.2f})", hypothesis.confidence()),
-        fit.skeleton.name);
-  }
-}
-
-// How badly a limb fits the model: the mean cost of its joints. Of bodies laid along curves, which have no costs, long
-// limbs come before short ones.
-double doubtOf(const Hypothesis& hypothesis, const TemplateLimb& limb, double length) {
-  if (hypothesis.byPlan) return length;
-  double cost = 0;
-  for (const Index joint : limb.placed) cost += hypothesis.fit.embedding.costs[joint];
-  cost /= static_cast<double>(std::max<std::size_t>(1, limb.placed.size()));
-  return limb.hasMatch ? cost : kCostOfUnmatched + cost;
-}
-
-std::vector<std::string> doubtsOf(const Hypothesis& hypothesis) {
-  std::vector<std::string> doubts;
-  if (hypothesis.confidence() >= kSureTemplate) return doubts;
-  const TemplateFit& fit = hypothesis.fit;
-  const std::vector<TemplateJoint>& joints = fit.skeleton.joints;
-  struct Limb {
-    Index end;
-    double doubt;
-  };
-  std::vector<Limb> limbs;
-  std::vector<bool> parts(joints.size(), false);
-  for (const TemplateJoint& joint : joints) {
-    if (joint.parent && joint.role != TemplateRole::kTip) parts[*joint.parent] = true;
-  }
-  for (const TemplateLimb& limb : fit.limbs) {
-    if (limb.joints.empty()) continue;
-    const Index end = limb.joints.back();
-    double length = 0;
-    for (const Index joint : limb.joints) {
-      if (joints[joint].parent) length += (joints[joint].position - joints[*joints[joint].parent].position).norm();
-    }
-    const std::optional<Index> mirror = joints[end].mirror;
-    const bool isPinned = fit.pins[end] || (mirror && fit.pins[*mirror]);
-    if (parts[end] || length < kLongLimb || isPinned) continue;
-    const double doubt = doubtOf(hypothesis, limb, length);
-    const auto other = std::find_if(limbs.begin(), limbs.end(), [&](const Limb& known) { return known.end == mirror; });
-    if (other == limbs.end()) {
-      limbs.push_back({end, doubt});
-    } else if (doubt > other->doubt) {
-      *other = {end, doubt};
-    }
-  }
-  std::stable_sort(limbs.begin(), limbs.end(), [](const Limb& a, const Limb& b) { return a.doubt > b.doubt; });
-  for (const Limb& limb : limbs) {
-    if (doubts.size() < kMaxDoubts) doubts.push_back(joints[limb.end].name);
-  }
-  return doubts;
-}
-
-std::vector<TemplateMatch> matchesOf(const std::vector<Hypothesis>& hypotheses) {
-  std::vector<TemplateMatch> matches;
-  for (const Hypothesis& hypothesis : hypotheses)
-    matches.push_back({hypothesis.fit.skeleton.name, hypothesis.confidence()});
-  return matches;
-}
-
-AutoRig asRead(const ReadTemplate& read, const TriMesh& mesh, const std::optional<TriMesh>& cleared) {
-  AutoRig rig;
-  rig.skeleton = standingSkeleton(read.skeleton, read.positions, read.frame);
-  rig.matches = read.matches;
-  rig.doubts = read.doubts;
-  rig.up = read.frame.axes.row(1).transpose();
-  warnOfStrays(mesh, cleared, rig);
-  warnOfMissingLimbs(read.skeleton, read.limbs, rig);
-  return rig;
-}
-
-AutoRig withHandles(const TriMesh& mesh, const RigOptions& options, const Hypothesis& likeliest, Progress& progress) {
+AutoRig withHandles(const TriMesh& mesh, const RigOptions& options, const TemplateMatch& likeliest,
+                    Progress& progress) {
   AutoRig rig = rigWithSphereMesh(mesh, options, progress);
   rig.isAbstained = true;
   rig.warnings.add("no-template",
                    fmt::format("the model is like no template (the likeliest is {:.0f} % sure): it gets handles",
-                               100 * likeliest.confidence()),
-                   likeliest.fit.skeleton.name);
+                               100 * likeliest.confidence),
+                   likeliest.name);
   return rig;
+}
+
+// What is not worth naming; the one that was chosen always is.
+void dropUnlikely(std::vector<TemplateMatch>& matches) {
+  const auto isUnlikely = [](const TemplateMatch& match) { return match.confidence < kWorthNaming; };
+  matches.erase(std::remove_if(matches.begin() + 1, matches.end(), isUnlikely), matches.end());
+}
+
+// Brings the likeliest kind that has all joints that are pinned to the front; nothing where none has.
+void chooseKind(std::vector<TemplateMatch>& matches, const RoleReading& reading, const std::vector<JointPin>& pins) {
+  const auto chosen = std::find_if(matches.begin(), matches.end(), [&](const TemplateMatch& match) {
+    const RoledSkeleton made = skeletonNamed(match.name, reading);
+    return std::all_of(pins.begin(), pins.end(), [&](const JointPin& pin) { return made.skeleton.find(pin.joint); });
+  });
+  if (chosen != matches.end()) std::rotate(matches.begin(), chosen, chosen + 1);
 }
 
 }  // namespace
@@ -437,7 +376,7 @@ AutoRig withHandles(const TriMesh& mesh, const RigOptions& options, const Hypoth
 std::vector<NamedTemplate> namedTemplates() {
   std::vector<NamedTemplate> named;
   for (const TemplateSkeleton& skeleton : templateSkeletons()) named.push_back({skeleton.name, skeleton.summary});
-  for (const PlanKind& kind : planKinds()) named.push_back({kind.name, kind.summary});
+  for (const BodyKind& kind : bodyKinds()) named.push_back({kind.name, kind.summary});
   return named;
 }
 
@@ -450,14 +389,6 @@ void checkTemplateName(std::string_view name) {
   }
   if (isKnown) return;
   throw Error(ErrorCode::kBadArgument, fmt::format("no template is called '{}'", name), {}, "there are: " + known);
-}
-
-TemplateFit fitTemplate(const TemplateSkeleton& skeleton, const TriMesh& mesh, const BodyVolume& body,
-                        const RigOptions& options) {
-  const std::vector<AnatomicalFrame> frames = possibleFrames(mesh, body, options.up, options.front);
-  FigureOnce figure;
-  Progress progress;
-  return bestFit(skeleton, {body, frames, options.front}, options.pins, figure, progress);
 }
 
 Skeleton standingSkeleton(const TemplateSkeleton& skeleton, const std::vector<Vec3>& positions,
@@ -498,97 +429,80 @@ Skeleton standingSkeleton(const TemplateSkeleton& skeleton, const std::vector<Ve
   return result;
 }
 
+TemplateFit fitTemplate(std::string_view name, const TriMesh& mesh, const ReadingWeights& weights) {
+  RigOptions options;
+  options.reading = std::make_shared<const ReadingWeights>(weights);
+  const std::shared_ptr<const MeasuredModel> measured = measure(mesh, options, options.reading);
+  RoleReading reading(measured->samples, weights, measured->frame);
+  if (measured->frame.symmetric()) reading.makeSymmetric();
+  RoledSkeleton made = skeletonNamed(name, reading);
+  std::vector<Vec3> positions = placed(made, reading, TemplatePins(made.skeleton.joints.size()));
+  return {std::move(made.skeleton), measured->frame, std::move(positions)};
+}
+
 AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress& progress) {
   if (!options.templateSkeleton) checkTemplateName(options.templateName);
-  std::vector<const TemplateSkeleton*> candidates;
-  const PlanKind* plan = options.templateSkeleton ? nullptr : findPlanKind(options.templateName);
-  TemplateSkeleton own;
-  std::optional<PersonTemplate> person;
-  if (options.templateSkeleton) {
-    own = templateFrom(*options.templateSkeleton, options.templateName);
-    person = personTemplate(*options.templateSkeleton, own);
-    candidates = {person ? &findTemplate("humanoid") : &own};
-  } else if (options.templateName == "auto") {
-    for (const TemplateSkeleton& skeleton : templateSkeletons()) candidates.push_back(&skeleton);
-  } else if (!plan) {
-    candidates = {&findTemplate(options.templateName)};
-  }
-  const std::vector<JointPin> pins = person ? humanoidPins(*person, options.pins) : options.pins;
   checkPins(mesh, options.pins);
+  const std::shared_ptr<const ReadingWeights> weights = options.reading ? options.reading : shapeWeights();
   progress.step("measure body");
-  const std::shared_ptr<const MeasuredModel> measured = measure(mesh, options);
-  const std::optional<TriMesh>& cleared = measured->cleared;
-  const TriMesh& surface = cleared ? *cleared : mesh;
-  const BodyVolume& body = measured->body;
-  const std::vector<AnatomicalFrame>& frames = measured->frames;
-  const std::optional<ShapeReading>& shape = measured->shape;
-  const Model model{body, frames, options.front};
-  // Animals face as their shape says: heads and tails look alike to a template.
-  const std::vector<AnatomicalFrame> likeShape = framesLike(shape, frames);
-  const Model animal{body, likeShape, options.front};
-  FigureOnce figure;
-  std::vector<TemplateFit> fits;
-  if (leavesTheChoice(options)) {
-    std::erase_if(candidates, [&](const TemplateSkeleton* candidate) { return !mayBe(*candidate, shape); });
-  }
-  for (const TemplateSkeleton* candidate : candidates) {
-    // Where it is a person, no poses of animals are tried.
-    const bool inPoses = isHumanoid(*candidate) || std::none_of(fits.begin(), fits.end(), isSure);
-    fits.push_back(bestFit(*candidate, isQuadruped(*candidate) ? animal : model, pins, figure, progress, inPoses));
-  }
-  if (fits.size() > 1) tellByFingers(surface, fits);
-  std::vector<Hypothesis> hypotheses;
-  for (TemplateFit& fit : fits) hypotheses.push_back(hypothesisOf(std::move(fit), shape));
-  if (plan || leavesTheChoice(options)) {
-    for (Hypothesis& hypothesis : planHypotheses(shape, plan, pins)) hypotheses.push_back(std::move(hypothesis));
-  }
-  std::stable_sort(hypotheses.begin(), hypotheses.end(),
-                   [](const Hypothesis& a, const Hypothesis& b) { return a.confidence() > b.confidence(); });
-  Hypothesis& likeliest = hypotheses.front();
-  if (options.mayAbstain && leavesTheChoice(options) && likeliest.confidence() < kLikelyTemplate) {
-    progress.step("read shape");
-    const std::shared_ptr<const ReadingWeights> weights = options.reading ? options.reading : shapeWeights();
-    const std::optional<ReadTemplate> read = readTemplate(surface, body, frames, *weights);
-    // The search finds people better than the reading, which takes heads and hands for some.
-    if (read && !isHumanoid(read->skeleton)) return asRead(*read, mesh, cleared);
-    AutoRig rig = withHandles(mesh, options, likeliest, progress);
-    rig.matches = matchesOf(hypotheses);
-    return rig;
-  }
-  if (person && likeliest.confidence() < kLikelyTemplate) {
-    // The model may stand as the user's skeleton does, and as no person of ours.
-    Hypothesis asItIs = hypothesisOf(bestFit(own, model, options.pins, figure, progress), shape);
-    if (asItIs.confidence() > likeliest.confidence()) {
-      likeliest = std::move(asItIs);
-      person.reset();
+  const std::shared_ptr<const MeasuredModel> measured = measure(mesh, options, weights);
+  const AnatomicalFrame& frame = measured->frame;
+  progress.step("read shape");
+  RoleReading reading(measured->samples, *weights, frame);
+  std::vector<TemplateMatch> matches;
+  std::string kind = options.templateName;
+  if (kind == "auto" && !options.templateSkeleton) {
+    matches = matchesOf(reading, *weights);
+    if (options.mayAbstain && leavesTheChoice(options) && matches.front().confidence < kLikelyTemplate) {
+      AutoRig rig = withHandles(mesh, options, matches.front(), progress);
+      dropUnlikely(matches);
+      rig.matches = std::move(matches);
+      return rig;
     }
+    chooseKind(matches, reading, options.pins);
+    dropUnlikely(matches);
+    kind = matches.front().name;
   }
-  TemplateFit& best = likeliest.fit;
+  const auto skeletonFor = [&] {
+    return options.templateSkeleton ? ownWithRoles(*options.templateSkeleton, options.templateName)
+                                    : skeletonNamed(kind, reading);
+  };
+  RoledSkeleton made = skeletonFor();
+  TemplatePins pins = pinsIn(made.skeleton, frame, options.pins);
+  if (!options.pins.empty()) {
+    reading = RoleReading(measured->samples, *weights, frame, knownRoles(made, pins));
+    made = skeletonFor();
+    pins = pinsIn(made.skeleton, frame, options.pins);
+  }
+  if (frame.symmetric() && pinnedEvenly(made.skeleton, pins)) reading.makeSymmetric();
+  std::vector<Vec3> positions = placed(made, reading, pins);
+  refine(made, measured->body, reading, pins, positions);
 
-  if (!likeliest.byPlan) {
-    refineHumanoid(best.skeleton, body, best.frame, best.pins, best.embedding.positions);
-    placeBetween(best.skeleton, best.embedding.positions);
-    if (!best.skeleton.bent()) refineHocks(best.skeleton, body, best.frame, best.pins, best.embedding.positions);
-    refineQuadruped(best.skeleton, body, best.frame, best.pins, best.embedding.positions);
-    const std::size_t missing = missingLimbs(best.limbs);
-    findHeadless(best.skeleton, best.embedding.positions, best.limbs);
-    // A shape that ends at the shoulders speaks for nobody.
-    if (missingLimbs(best.limbs) > missing) likeliest.vote = std::min(likeliest.vote, 0.0);
-  }
   AutoRig rig;
-  if (person) {
-    const TemplatePins ownPins = pinsIn(person->skeleton, best.frame, options.pins);
-    const std::vector<Vec3> positions = placePerson(*person, best.embedding.positions, ownPins);
-    rig.skeleton = standingSkeleton(person->skeleton, positions, best.frame);
-    best.skeleton = humanoidNamedAs(*person, std::move(best.skeleton));
-  } else {
-    rig.skeleton = standingSkeleton(best.skeleton, best.embedding.positions, best.frame);
+  rig.skeleton = standingSkeleton(made.skeleton, positions, frame);
+  if (measured->cleared) {
+    rig.warnings.add("stray-pieces", "triangles that float about the model are left out of account", {},
+                     mesh.triangleCount() - measured->cleared->triangleCount());
   }
-  warnOfStrays(mesh, cleared, rig);
-  rig.up = best.frame.axes.row(1).transpose();
-  rig.matches = matchesOf(hypotheses);
-  if (!person) rig.doubts = doubtsOf(likeliest);
-  warn(likeliest, rig);
+  rig.up = frame.axes.row(1).transpose();
+  if (matches.empty()) {
+    const std::optional<std::string_view> plan =
+        options.templateSkeleton ? planOf(readAnatomy(*options.templateSkeleton)) : planOfKind(kind);
+    matches = {{kind, confidenceOf(plan ? reading.probability(*plan) : 1, made, reading)}};
+  }
+  rig.doubts = doubtsOf(made, reading, pins);
+  const std::vector<TemplateLimb> limbs = limbsOf(made, reading);
+  const auto missing = std::count_if(limbs.begin(), limbs.end(), [](const TemplateLimb& l) { return !l.isThere; });
+  if (missing > 0) {
+    rig.warnings.add("no-place", "limbs of the template have no place in the model", missingLimbs(made.skeleton, limbs),
+                     static_cast<std::size_t>(missing));
+  }
+  if (matches.front().confidence < kLikelyTemplate) {
+    rig.warnings.add(
+        "low-confidence",
+        fmt::format("the model hardly looks like the template (confidence {:.2f})", matches.front().confidence), kind);
+  }
+  rig.matches = std::move(matches);
   return rig;
 }
 

@@ -140,6 +140,23 @@ const cases = {
     assert.match(await visit.page.locator('#notice').textContent(), /did not arrive.*connection.*load the page again/);
     await visit.context.close();
   },
+  async 'the networks that read shapes come when a skeleton is fitted; where they do not, that is told, and the next try gets them'() {
+    let asked = 0;
+    const prepare = (context) => context.route(/shapes-.*\.lrd/, (route) => (++asked === 1 ? route.abort('internetdisconnected') : route.continue()));
+    const visit = await openStudio(browser, server.address, { search: '?sample=biped', prepare }), at = visit.page;
+    await settled(at);
+    assert.equal(asked, 0);
+    await at.locator('#methods summary').click();
+    await at.locator('#rigger').selectOption('template');
+    await at.locator('#notice').waitFor();
+    assert.match(await at.locator('#notice').textContent(), /did not arrive.*connection/);
+    await at.locator('#rigger').selectOption('curve-skeleton');
+    await settled(at);
+    await at.locator('#rigger').selectOption('template');
+    await at.waitForFunction(() => globalThis.limberStudio.state()?.rigger === 'template');
+    assert.equal(asked, 2);
+    await visit.context.close();
+  },
   async 'a page whose code does not come or does not run says so, in all its languages'() {
     const visit = (file, answer) => visitWithout(answer, { file, told: '#apology' });
     const said = [

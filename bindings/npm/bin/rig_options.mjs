@@ -32,7 +32,7 @@ export const rigOptions = [
   { name: 'max-influences', value: 'K', field: 'maxInfluences', read: number, help: 'joints that may move one vertex, 1 to 8' },
   { name: 'rigger', value: 'NAME', field: 'rigger', read: text, help: 'how joints are found, see below (default: sphere-mesh, or template where one is named)' },
   { name: 'template', value: 'NAME', field: 'template', read: text, help: 'fit this named skeleton: auto, a name below, or a file with a skeleton (.glb, .bvh, .json, ...)' },
-  { name: 'pin', value: 'PIN', multiple: true, field: 'pins', read: pins, help: "where a joint of the template must be, as JOINT=x,y,z in the file's space; several tell a pose" },
+  { name: 'pin', value: 'PIN', multiple: true, field: 'pins', read: pins, help: "where a joint of the template must be, as JOINT=x,y,z in the file's space; others follow" },
   { name: 'up', value: 'AXIS', field: 'up', read: text, help: "the model's up, for a template, as +y (default: found)" },
   { name: 'front', value: 'AXIS', field: 'front', read: text, help: 'where the model looks, for a template, as +z (default: found)' },
   { name: 'upright', field: 'upright', read: flag, help: 'turn a model that surely stands along another axis to stand along +Y' },

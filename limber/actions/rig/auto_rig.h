@@ -42,7 +42,7 @@ struct AutoRigReport {
   Index removedJoints = 0, removedClips = 0;  // of the old rig, with ExistingRig::kReplace
   std::vector<HandleSuggestion> suggestions;
   bool isAbstained = false;            // handles instead of a template (AutoRig)
-  std::vector<TemplateMatch> matches;  // of templates that were tried, likeliest first
+  std::vector<TemplateMatch> matches;  // as in AutoRig
   std::vector<std::string> chains;     // names of chains that got joints of their own (AutoRigOptions::chains)
   std::vector<std::string> doubts;     // ambiguous joints, whose pins would settle most (AutoRig)
   std::vector<BridgedNode> bridged;    // most vertices first

@@ -15,7 +15,6 @@ struct AnatomicalFrame {
   Mat3 axes = Mat3::Identity();  // rows: left, up and front in the mesh's space
   Vec3 origin = Vec3::Zero();    // in the mesh's space
   double height = 1;             // of the mesh along up
-  bool isFrontRead = false;      // off the body's shape, not tried: then no front is unusual
   double asymmetry = 1;          // 0 where both halves are the same; about 1 where they have nothing in common
 
   bool symmetric() const;

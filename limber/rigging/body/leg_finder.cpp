@@ -8,7 +8,7 @@ namespace limber {
 namespace {
 
 constexpr double kLegSeedReach = 0.04;  // heights
-constexpr double kLowestParting = 0.3;  // of the height from ankle to hip as embedded: legs that part lower are no legs
+constexpr double kLowestParting = 0.3;  // of the height from ankle to hip as read: legs that part lower are no legs
 constexpr double kHockBehind = 0.05;    // heights
 constexpr int kStaysTogether = 3;       // cuts
 
@@ -85,7 +85,7 @@ std::optional<Vec3> LegFinder::hock(int side) const {
   return hock;
 }
 
-// Upwards from the last cut; first on the embedded shin.
+// Upwards from the last cut; first on the shin as it was read.
 Vec3 LegFinder::seed(int side, double y) const {
   if (!sections_[side].empty()) {
     const Vec3& last = sections_[side].back().center;

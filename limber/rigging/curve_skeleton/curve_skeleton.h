@@ -12,8 +12,7 @@ namespace limber {
 
 // Au, Tai, Chu, Cohen-Or, Lee: Skeleton Extraction by Mesh Contraction, 2008: the surface shrinks under its Laplacian
 // (contraction.h), its triangles are collapsed until curves are left (connectivity_surgery.h), and each node of these
-// moves to the middle of the surface that went into it. body/body_curves.h finds the curves of a symmetric body through
-// its inside instead, by level sets on a grid; these here need no inside, no grid, no symmetry.
+// moves to the middle of the surface that went into it.
 //
 // All runs on an even sampling of the surface (even_surface.h), of kMaxEvenPoints points at most, so that only reading
 // the model takes longer the larger it is. Separate pieces have a curve each, joined where their surfaces are nearest;

@@ -101,8 +101,7 @@ class HumanoidMover {
     if (parted) moveTo(joints.hips, {positions_[joints.hips].x(), between.y() - proportions_.hipsBelow, between.z()});
   }
 
-  // Both arms are as long as the longer: what a hand holds rather keeps an embedding from the hand than draws it
-  // beyond.
+  // Both arms are as long as the longer: what a hand holds rather keeps its joint from the hand than draws it beyond.
   void evenOut(const std::array<Arm, 2>& arms) {
     double lengths[2];
     for (int side = 0; side < 2; ++side) {
@@ -173,7 +172,7 @@ class HumanoidMover {
  private:
   // The tip goes along where it would no longer be well beyond the hand in the direction of the forearm.
   void moveHand(const Arm& arm, const Vec3& position, const Vec3& forearm) {
-    const Vec3 before = embedded_[arm.hand];
+    const Vec3 before = before_[arm.hand];
     moveTo(arm.hand, position);
     if (!arm.tip) return;
     const Vec3 moved = positions_[arm.hand] - before;
@@ -197,7 +196,7 @@ class HumanoidMover {
   const AnatomicalFrame& frame_;
   const std::vector<std::optional<Vec3>>& pins_;
   std::vector<Vec3>& positions_;
-  const std::vector<Vec3> embedded_ = positions_;  // as it was before anything moved
+  const std::vector<Vec3> before_ = positions_;  // as it was before anything moved
   const HumanoidProportions& proportions_;
 };
 
@@ -209,15 +208,9 @@ void refineHumanoid(const TemplateSkeleton& skeleton, const BodyVolume& body, co
   const std::optional<HumanoidJoints> joints = humanoidJointsOf(skeleton);
   if (!joints) return;
   HumanoidMover mover(body, frame, pins, positions, proportions);
-  if (!skeleton.bent()) {
-    mover.legs(*joints);
-    mover.evenOut(joints->arms);
-    for (const Arm& arm : joints->arms) mover.arm(arm);
-    mover.trunk(*joints);
-    return;
-  }
-  // Bent arms are better where they were found.
   if (mover.restsOn(joints->legs)) mover.legs(*joints);
+  mover.evenOut(joints->arms);
+  for (const Arm& arm : joints->arms) mover.arm(arm);
   if (mover.isUpright(joints->hips, joints->neck)) mover.trunk(*joints);
 }
 

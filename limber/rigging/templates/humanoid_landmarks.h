@@ -28,8 +28,8 @@ struct HumanoidProportions {
 // Where a template has the legs and arms of VRM's humanoid: the legs' upper joints go to where the legs part; knees,
 // ankles, elbows and hands to the middle of the limb; shoulders on in the direction of the upper arm; the hips between
 // the legs, the neck and the head above the shoulders, all in the middle between front and back. What a body does not
-// show (a robe hides where legs part) stays where it was. Of a template that was bent, legs and trunk move only where
-// they are upright, arms not at all. Pinned joints stay. Body space.
+// show (a robe hides where legs part) stays where it was. Legs and trunk move only where they are upright. Pinned joints
+// stay. Body space.
 void refineHumanoid(const TemplateSkeleton& skeleton, const BodyVolume& body, const AnatomicalFrame& frame,
                     const std::vector<std::optional<Vec3>>& pins, std::vector<Vec3>& positions,
                     const HumanoidProportions& proportions = {});

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "limber/rigging/body/testing/measured_person.h"
-#include "limber/rigging/templates/template_embedding.h"
 
 namespace limber {
 
@@ -16,7 +15,7 @@ TEST(HumanoidLandmarks, HipsGoWhereLegsPart) {
   const Index hip = *skeleton.find("leftUpperLeg"), knee = *skeleton.find("leftLowerLeg");
   std::vector<Vec3> positions;
   for (const TemplateJoint& joint : skeleton.joints) positions.push_back(joint.position);
-  positions[hip].y() += 0.07;  // an embedding that is off
+  positions[hip].y() += 0.07;  // a reading that is off
   positions[*skeleton.find("rightUpperLeg")].y() += 0.07;
   std::vector<std::optional<Vec3>> pins(positions.size());
   refineHumanoid(skeleton, person.body, person.frame, pins, positions);
@@ -58,7 +57,7 @@ TEST(HumanoidLandmarks, ArmsGoWhereTheyLeaveTheTrunk) {
   positions[hand] = person.frame.toBody(person.shape.hand) + Vec3(0, 0.01, 0.01);
   std::vector<Vec3> far = positions;
   positions[shoulder] = shoulderThere;
-  far[shoulder] = shoulderThere + 0.05 * along;  // an embedding that is off
+  far[shoulder] = shoulderThere + 0.05 * along;  // a reading that is off
   const std::vector<std::optional<Vec3>> pins(positions.size());
   refineHumanoid(skeleton, person.body, person.frame, pins, positions);
   refineHumanoid(skeleton, person.body, person.frame, pins, far);
@@ -94,7 +93,7 @@ TEST(HumanoidLandmarks, AShorterArmIsAsLongAsTheOther) {
   for (const std::string side : {"left", "right"}) {
     const Vec3 mirror(side == "left" ? 1 : -1, 1, 1);
     const Vec3 shoulder = person.frame.toBody(person.shape.shoulder);
-    const double fraction = side == "left" ? 1 : 0.7;  // an embedding that stopped short of the right hand
+    const double fraction = side == "left" ? 1 : 0.7;  // a reading that stopped short of the right hand
     const auto set = [&](const char* bone, const Vec3& position) {
       positions[*skeleton.find(side + bone)] = (shoulder + fraction * (position - shoulder)).cwiseProduct(mirror);
     };

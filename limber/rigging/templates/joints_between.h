@@ -1,4 +1,4 @@
-// Joints of a template that are not searched for: they lie between those that are.
+// Joints of a template that are not read off the model: they lie between those that are.
 #pragma once
 
 #include <vector>

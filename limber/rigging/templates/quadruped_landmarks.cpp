@@ -7,7 +7,6 @@
 #include "limber/rigging/body/leg_finder.h"
 #include "limber/rigging/body/medial_path.h"
 #include "limber/rigging/templates/joints_between.h"
-#include "limber/rigging/templates/template_embedding.h"
 
 namespace limber {
 

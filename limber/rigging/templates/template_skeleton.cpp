@@ -13,7 +13,8 @@ namespace limber {
 namespace {
 
 constexpr double kStraight = 0.05;      // radians that a chain turns at a joint that lies between
-constexpr double kMinBone = 0.04;       // heights of a bone whose end may be searched for
+constexpr double kMinBone = 0.04;       // heights of a bone whose end is placed
+constexpr double kPinnedEvenly = 0.01;  // heights between a pin and the mirror image of the other
 constexpr double kSamePosition = 0.02;  // heights between a position and its mirror image
 
 struct SideWord {
@@ -76,7 +77,6 @@ void addTips(TemplateSkeleton& skeleton, const std::vector<Index>& children) {
     tip.parent = j;
     tip.position = leaf.position + 0.5 * bone;
     tip.role = TemplateRole::kTip;
-    tip.turnSpread = 0.7;
     skeleton.joints.push_back(std::move(tip));
   }
 }
@@ -108,12 +108,13 @@ std::optional<Index> TemplateSkeleton::find(std::string_view joint) const {
   return std::nullopt;
 }
 
-Index placedAbove(const TemplateSkeleton& skeleton, Index joint) {
-  Index above = skeleton.joints[joint].parent.value();
-  while (skeleton.joints[above].role == TemplateRole::kBetween && skeleton.joints[above].parent) {
-    above = *skeleton.joints[above].parent;
+bool pinnedEvenly(const TemplateSkeleton& skeleton, const TemplatePins& pins) {
+  for (Index j = 0; j < skeleton.jointCount(); ++j) {
+    if (!pins[j]) continue;
+    const std::optional<Vec3>& other = pins[skeleton.joints[j].mirror.value_or(j)];
+    if (!other || (other->cwiseProduct(Vec3(-1, 1, 1)) - *pins[j]).norm() > kPinnedEvenly) return false;
   }
-  return above;
+  return true;
 }
 
 TemplateSkeleton templateFrom(const Skeleton& skeleton, std::string_view name) {

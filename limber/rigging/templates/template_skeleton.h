@@ -1,4 +1,4 @@
-// A named skeleton that is to be fitted into a model, with what is known of how models differ from it.
+// A named skeleton that is to be fitted into a model.
 #pragma once
 
 #include <optional>
@@ -13,9 +13,9 @@ namespace limber {
 
 // Where a joint's position comes from.
 enum class TemplateRole {
-  kPlaced,   // searched for in the model
+  kPlaced,   // read off the model
   kBetween,  // follows from the placed joints above and below it
-  kTip,      // the end of a limb: searched for at the model's ends; no joint of the result
+  kTip,      // where the last bone of a limb ends; no joint of the result
 };
 
 struct TemplateJoint {
@@ -23,8 +23,6 @@ struct TemplateJoint {
   std::optional<Index> parent;   // before the joint
   Vec3 position = Vec3::Zero();  // x to the body's left, y up from 0 (lowest) to 1 (highest), z to the front
   TemplateRole role = TemplateRole::kPlaced;
-  double lengthSpread = 0.4;  // standard deviation of the logarithm of the bone's length (from the placed joint above)
-  double turnSpread = 0.5;    // of its direction, radians
   std::optional<Index> mirror;  // the joint of the other side; none for joints of the middle
 };
 
@@ -32,32 +30,21 @@ struct TemplateSkeleton {
   std::string name;
   std::string summary;  // one line for --help
   std::vector<TemplateJoint> joints;
-  // #J, the joints' positions in the neutral pose, if those of `joints` are of another pose; else empty. In another
-  // pose each side has its own positions, neither is the mirror image of the other.
-  std::vector<Vec3> standing = {};
-  bool bent() const { return !standing.empty(); }
 
   Index jointCount() const { return static_cast<Index>(joints.size()); }
   std::optional<Index> find(std::string_view joint) const;
 };
 
-// The nearest joint above that is not one between; the root, which may be one, where there is no other. Not of the
-// root.
-Index placedAbove(const TemplateSkeleton& skeleton, Index joint);
+// Given positions in body space (AnatomicalFrame), one for each joint.
+using TemplatePins = std::vector<std::optional<Vec3>>;
+
+// Whether every pin has its mirror image: of the joint of the other side, of its own in the middle.
+bool pinnedEvenly(const TemplateSkeleton& skeleton, const TemplatePins& pins);
 
 // The templates that limber knows: humanoid, humanoid-fingers, quadruped, bird.
 std::span<const TemplateSkeleton> templateSkeletons();
 // Throws Error kBadArgument that lists the names there are.
 const TemplateSkeleton& findTemplate(std::string_view name);
-
-struct TemplateVariant {
-  TemplateSkeleton skeleton;
-  double cost = 0;  // to be added to an embedding's: how rare such bodies are
-};
-
-// The template itself; for a person also with shorter legs, a larger head and longer arms, as toys and cartoons have
-// them; for a four-legged animal also with a low head and a long body; for a bird also as it flies.
-std::vector<TemplateVariant> templateVariants(const TemplateSkeleton& skeleton);
 
 // A user's skeleton as a template: positions from its rest pose, in its own orientation (up is +Y, front +Z); joints
 // that part the tree, end it or bend it are placed, the others lie between; every leaf gets a tip, unless it is one by

@@ -47,9 +47,6 @@ TEST(TemplateSkeleton, TablesAreSound) {
       } else {
         EXPECT_EQ(joint.position.x(), 0);
       }
-      if (joint.role == TemplateRole::kPlaced && j > 0) {
-        EXPECT_GT(joint.lengthSpread * joint.turnSpread, 0);
-      }
     }
     EXPECT_EQ(&findTemplate(skeleton.name), &skeleton);
   }
@@ -70,64 +67,6 @@ TEST(TemplateSkeleton, PeopleHaveTheNamesAndParentsOfVrm) {
       }
     }
   }
-}
-
-TEST(TemplateSkeleton, VariantsHaveOtherProportions) {
-  const TemplateSkeleton& person = findTemplate("humanoid");
-  const std::vector<TemplateVariant> variants = templateVariants(person);
-  ASSERT_GT(variants.size(), 1u);
-  const Index hips = *person.find("hips"), tip = *person.find("headTip"), foot = *person.find("leftFoot");
-  const Index shoulder = *person.find("leftUpperArm"), hand = *person.find("leftHand");
-  const auto armOf = [&](const TemplateSkeleton& skeleton) {
-    return (skeleton.joints[hand].position - skeleton.joints[shoulder].position).norm();
-  };
-  double longestArm = 0, highestHips = 0, lowestHips = 1;
-  for (const TemplateVariant& variant : variants) {
-    const std::vector<TemplateJoint>& joints = variant.skeleton.joints;
-    EXPECT_GE(variant.cost, 0);
-    EXPECT_LT(joints[foot].position.y(), joints[hips].position.y());
-    EXPECT_EQ(joints[tip].position, person.joints[tip].position);
-    for (const TemplateJoint& joint : joints) {
-      if (!joint.mirror) continue;
-      EXPECT_LT((joints[*joint.mirror].position - joint.position.cwiseProduct(Vec3(-1, 1, 1))).norm(), 1e-12)
-          << joint.name;
-    }
-    longestArm = std::max(longestArm, armOf(variant.skeleton));
-    highestHips = std::max(highestHips, joints[hips].position.y());
-    lowestHips = std::min(lowestHips, joints[hips].position.y());
-  }
-  EXPECT_EQ(highestHips, person.joints[hips].position.y());
-  EXPECT_LT(lowestHips, 0.25);
-  EXPECT_GT(longestArm, 2 * armOf(person));
-}
-
-TEST(TemplateSkeleton, BirdsMayFly) {
-  const TemplateSkeleton& bird = findTemplate("bird");
-  const std::vector<TemplateVariant> variants = templateVariants(bird);
-  ASSERT_EQ(variants.size(), 2u);
-  const TemplateSkeleton& flying = variants[1].skeleton;
-  ASSERT_EQ(flying.jointCount(), bird.jointCount());
-  for (Index j = 0; j < bird.jointCount(); ++j) {
-    EXPECT_EQ(flying.joints[j].name, bird.joints[j].name);
-    EXPECT_EQ(flying.joints[j].parent, bird.joints[j].parent);
-    EXPECT_EQ(flying.joints[j].role, bird.joints[j].role);
-  }
-  const Index wing = bird.find("leftWingTip").value();
-  EXPECT_GT(flying.joints[wing].position.x(), 1.5 * bird.joints[wing].position.x());
-}
-
-TEST(TemplateSkeleton, AnimalsMayBeLongAndCarryTheirHeadsLow) {
-  const TemplateSkeleton& animal = findTemplate("quadruped");
-  const Index head = *animal.find("head"), tail = *animal.find("tail");
-  double lowest = 1, longest = 0;
-  for (const TemplateVariant& variant : templateVariants(animal)) {
-    EXPECT_GE(variant.cost, 0);
-    lowest = std::min(lowest, variant.skeleton.joints[head].position.y());
-    longest =
-        std::max(longest, variant.skeleton.joints[head].position.z() - variant.skeleton.joints[tail].position.z());
-  }
-  EXPECT_LT(lowest, animal.joints[head].position.y() - 0.1);
-  EXPECT_GT(longest, 1.2 * (animal.joints[head].position.z() - animal.joints[tail].position.z()));
 }
 
 TEST(TemplateSkeleton, OfAUsersSkeleton) {

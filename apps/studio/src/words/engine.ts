@@ -14,7 +14,7 @@ const stages: Named = {
   'fit target': 'Finding the limbs', 'fit source': 'Finding the limbs', 'transfer': 'Laying one model on the other',
   'find bones': 'Finding bones', 'find joints': 'Finding joints',
 };
-/** "rig: fit humanoid" is a step of the stage "rig". */
+/** "rig: read shape" is a step of the stage "rig". */
 export function stageName(stage: string): string {
   const known = stages[stage.split(':')[0] ?? ''];
   return known ? say(known) : stage;

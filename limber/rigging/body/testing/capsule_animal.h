@@ -3,11 +3,8 @@
 
 #include <vector>
 
-#include "limber/geometry/mesh/prepare.h"
 #include "limber/geometry/mesh/testing/capsule.h"
 #include "limber/geometry/mesh/tri_mesh.h"
-#include "limber/rigging/body/anatomical_frame.h"
-#include "limber/rigging/body/body_volume.h"
 
 namespace limber::testing {
 
@@ -81,18 +78,6 @@ inline TriMesh capsuleFish() {
     addChain(mesh, {{0.09, 0.17, z}, {0.3, 0.12, z - 0.1}}, 0.018, 0.015);
   }
   return mesh;
-}
-
-struct MeasuredAnimal {
-  TriMesh mesh;
-  BodyVolume body;
-  std::vector<AnatomicalFrame> frames;
-};
-inline MeasuredAnimal measured(const TriMesh& mesh) {
-  MeasuredAnimal animal{prepareMesh(mesh.positions, mesh.triangles).mesh, {}, {}};
-  animal.body = measureBody(animal.mesh);
-  animal.frames = possibleFrames(animal.mesh, animal.body, {}, {});
-  return animal;
 }
 
 }  // namespace limber::testing
