@@ -8,19 +8,20 @@
 
 #include "limber/character/anatomy/anatomy.h"
 #include "limber/core/known_error.h"
-#include "limber/core/text/numbers.h"
 #include "limber/geometry/mesh/model_box.h"
 #include "limber/geometry/surface/stray_pieces.h"
 #include "limber/reading/learned_reading.h"
 #include "limber/reading/shape_weights.h"
 #include "limber/rigging/body/body_volume.h"
 #include "limber/rigging/roles/body_kinds.h"
+#include "limber/rigging/roles/likeliest_frame.h"
+#include "limber/rigging/roles/placed_joints.h"
+#include "limber/rigging/roles/refined_roles.h"
 #include "limber/rigging/roles/role_reading.h"
+#include "limber/rigging/roles/roled_templates.h"
 #include "limber/rigging/sphere_mesh_rigger.h"
-#include "limber/rigging/templates/humanoid_landmarks.h"
-#include "limber/rigging/templates/joints_between.h"
 #include "limber/rigging/templates/limb_chains.h"
-#include "limber/rigging/templates/quadruped_landmarks.h"
+#include "limber/rigging/templates/standing_skeleton.h"
 
 namespace limber {
 
@@ -37,15 +38,9 @@ struct MeasuredModel {
 
 namespace {
 
-constexpr double kAsymmetryScale = 0.1;   // asymmetry that counts as much as e times less probability of a stance
-constexpr double kMinProbability = 1e-3;  // of a stance
-constexpr double kUnusualUp = 0.1;        // models whose up is neither +Y nor +Z, to those whose up is one of these
 constexpr double kDoubtfulJoint = 0.05;   // expected error, heights
 constexpr double kWorthNaming = 0.01;     // confidence of a kind that is told beside the likeliest
 constexpr double kMissing = 100;          // above any error
-constexpr double kLandmarkReach = 2;      // expected errors that a landmark may lie from the reading
-constexpr double kMinReach = 0.03;        // heights
-constexpr double kTipBeyond = 0.5;        // of a bone: its end beyond the joint, where no sample tells
 
 // Each joint once, and where the model may be: the model's size beyond its box is another unit.
 void checkPins(const TriMesh& mesh, const std::vector<JointPin>& pins) {
@@ -64,32 +59,6 @@ void checkPins(const TriMesh& mesh, const std::vector<JointPin>& pins) {
                        {{"joint", pin->joint}});
     }
   }
-}
-
-// Of those with an axis that is up and one that is front. Rows: left, up, front.
-double probabilityOf(const Mat3& axes, const LearnedStance& stance) {
-  const std::array<Mat3, kStances> rotations = stanceRotations();
-  std::size_t nearest = 0;
-  const auto likeness = [&](std::size_t i) { return rotations[i].cwiseProduct(axes).sum(); };
-  for (std::size_t i = 1; i < rotations.size(); ++i) {
-    if (likeness(i) > likeness(nearest)) nearest = i;
-  }
-  return stance.probabilities[nearest];
-}
-
-// Files have +Y or +Z up, whatever the shape says; the networks learned all 24 stances alike.
-double priorOf(const AnatomicalFrame& frame) {
-  return std::max(frame.axes(1, 1), frame.axes(1, 2)) > std::cos(kPi / 4) - 1e-6 ? 1 : kUnusualUp;
-}
-
-AnatomicalFrame likeliestFrame(const std::vector<AnatomicalFrame>& frames, const LearnedStance& stance) {
-  const auto likelihood = [&](const AnatomicalFrame& frame) {
-    const double probability = priorOf(frame) * std::max(probabilityOf(frame.axes, stance), kMinProbability);
-    return std::log(probability) - frame.asymmetry / kAsymmetryScale;
-  };
-  return *std::max_element(frames.begin(), frames.end(), [&](const AnatomicalFrame& a, const AnatomicalFrame& b) {
-    return likelihood(a) < likelihood(b);
-  });
 }
 
 std::shared_ptr<const MeasuredModel> measure(const TriMesh& mesh, const RigOptions& options,
@@ -117,40 +86,6 @@ std::shared_ptr<const MeasuredModel> measure(const TriMesh& mesh, const RigOptio
 }
 
 // ---- which skeleton
-
-RoledSkeleton templateWithRoles(std::string_view name) {
-  const TemplateSkeleton& skeleton = findTemplate(name);
-  std::vector<Vec3> positions;
-  for (const TemplateJoint& joint : skeleton.joints) positions.push_back(joint.position);
-  const Skeleton rest = standingSkeleton(skeleton, positions, {});
-  const std::vector<std::optional<RolePosition>> roles = jointRoles(rest, readAnatomy(rest));
-  // Tips are among the template's joints, and no joints of the rest pose.
-  RoledSkeleton made = {skeleton, {}};
-  Index next = 0;
-  for (TemplateJoint& joint : made.skeleton.joints) {
-    if (joint.role == TemplateRole::kTip) {
-      made.roles.push_back(made.roles[*joint.parent]);
-    } else {
-      made.roles.push_back(roles[next++]);
-      joint.role = made.roles.back() ? TemplateRole::kPlaced : TemplateRole::kBetween;
-    }
-  }
-  return made;
-}
-
-// A user's, rotated to stand as templates do.
-RoledSkeleton ownWithRoles(const Skeleton& skeleton, std::string_view name) {
-  const Anatomy anatomy = readAnatomy(skeleton);
-  Mat3 axes;
-  axes << anatomy.axes.left().transpose(), anatomy.axes.up.transpose(), anatomy.axes.front.transpose();
-  Skeleton standing = skeleton;
-  for (Joint& joint : standing.joints) {
-    if (joint.parent) continue;
-    joint.rest.translation = axes * joint.rest.translation;
-    joint.rest.rotation = Quat(axes) * joint.rest.rotation;
-  }
-  return withRoles(templateFrom(standing, name), standing, anatomy);
-}
 
 bool hasFingers(const RoleReading& reading) {
   return reading.fingers(Side::kLeft) + reading.fingers(Side::kRight) >= 8;
@@ -188,7 +123,7 @@ std::optional<std::string_view> planOf(const Anatomy& anatomy) {
 
 RoledSkeleton skeletonNamed(std::string_view name, const RoleReading& reading) {
   const BodyKind* kind = findBodyKind(name);
-  return kind ? skeletonOfKind(*kind, reading) : templateWithRoles(name);
+  return kind ? skeletonOfKind(*kind, reading) : templateWithRoles(name, reading);
 }
 
 // ---- its joints in the body
@@ -218,67 +153,6 @@ std::map<std::string, Vec3> knownRoles(const RoledSkeleton& made, const Template
   return known;
 }
 
-bool isMissing(const RoleReading& reading, const RolePosition& role) {
-  return !reading.has(role.from) && !reading.has(role.to);
-}
-
-// Beyond the last joint of a limb: the end of its bone.
-Vec3 tipOf(const RoledSkeleton& made, Index tip, const RoleReading& reading, const std::vector<Vec3>& positions) {
-  const Index joint = made.skeleton.joints[tip].parent.value();
-  const std::optional<Index> above = made.skeleton.joints[joint].parent;
-  const Vec3 bone = above ? Vec3(positions[joint] - positions[*above]) : Vec3(0, 0.1, 0);
-  if (made.roles[joint]) {
-    if (const auto end = reading.boneEnd(partOfRole(made.roles[joint]->to), positions[joint])) return *end;
-  }
-  return positions[joint] + kTipBeyond * bone;
-}
-
-std::vector<Vec3> placed(RoledSkeleton& made, const RoleReading& reading, const TemplatePins& pins) {
-  std::vector<TemplateJoint>& joints = made.skeleton.joints;
-  std::vector<Vec3> positions;  // of a skeleton that is no body's: as it is, as high as the model
-  for (std::size_t j = 0; j < joints.size(); ++j) {
-    if (pins[j] && joints[j].role != TemplateRole::kTip) joints[j].role = TemplateRole::kPlaced;
-    const bool isRead = joints[j].role == TemplateRole::kPlaced && !pins[j];
-    positions.push_back(isRead ? reading.position(*made.roles[j]) : pins[j].value_or(joints[j].position));
-  }
-  placeBetween(made.skeleton, positions);
-  for (std::size_t j = 0; j < joints.size(); ++j) {
-    if (joints[j].role != TemplateRole::kTip || pins[j]) continue;
-    if (joints[*joints[j].parent].role == TemplateRole::kPlaced) {
-      positions[j] = tipOf(made, static_cast<Index>(j), reading, positions);
-    }
-  }
-  placeBetween(made.skeleton, positions);
-  return positions;
-}
-
-// From where the reading has the joint. A raised heel, which refineHocks takes for the foot, is another role.
-double strayed(const RolePosition& role, const RoleReading& reading, const Vec3& read, const Vec3& refined) {
-  const double distance = (refined - read).norm();
-  const std::string side = role.from.substr(role.from.size() - 2);
-  std::string other;
-  if (role.from.starts_with("hind_end")) other = "hind_hock" + side;
-  if (role.from.starts_with("hind_toes")) other = "hind_end" + side;
-  return other.empty() ? distance : std::min(distance, (refined - reading.position({other, other, 0})).norm());
-}
-
-// The shape of limbs shows where their joints are; what it shows far from where the reading has them is something else.
-void refine(const RoledSkeleton& made, const BodyVolume& body, const RoleReading& reading, const TemplatePins& pins,
-            std::vector<Vec3>& positions) {
-  const std::vector<Vec3> read = positions;
-  const TemplateSkeleton& skeleton = made.skeleton;
-  refineHumanoid(skeleton, body, reading.frame(), pins, positions);
-  placeBetween(skeleton, positions);
-  refineHocks(skeleton, body, reading.frame(), pins, positions);
-  refineQuadruped(skeleton, body, reading.frame(), pins, positions);
-  for (std::size_t j = 0; j < positions.size(); ++j) {
-    if (!made.roles[j] || skeleton.joints[j].role != TemplateRole::kPlaced) continue;
-    const double reach = std::max(kLandmarkReach * reading.expectedError(*made.roles[j]), kMinReach);
-    if (strayed(*made.roles[j], reading, read[j], positions[j]) > reach) positions[j] = read[j];
-  }
-  placeBetween(skeleton, positions);
-}
-
 // ---- how sure it is, and what to say of it
 
 std::vector<TemplateLimb> limbsOf(const RoledSkeleton& made, const RoleReading& reading) {
@@ -289,7 +163,7 @@ std::vector<TemplateLimb> limbsOf(const RoledSkeleton& made, const RoleReading& 
       // Few hands show their fingers: that they are not seen says nothing.
       if (!made.roles[joint] || made.roles[joint]->from.starts_with("finger")) continue;
       hasRole = true;
-      isThere = isThere || !isMissing(reading, *made.roles[joint]);
+      isThere = isThere || reading.has(made.roles[joint]->from) || reading.has(made.roles[joint]->to);
     }
     limb.isThere = isThere || !hasRole;
   }
@@ -391,44 +265,6 @@ void checkTemplateName(std::string_view name) {
   throw Error(ErrorCode::kBadArgument, fmt::format("no template is called '{}'", name), {}, "there are: " + known);
 }
 
-Skeleton standingSkeleton(const TemplateSkeleton& skeleton, const std::vector<Vec3>& positions,
-                          const AnatomicalFrame& frame) {
-  const Index count = skeleton.jointCount();
-  std::vector<std::optional<Index>> next(count);
-  for (Index j = 0; j < count; ++j) {
-    const std::optional<Index> parent = skeleton.joints[j].parent;
-    if (parent && (!next[*parent] || skeleton.joints[j].role == TemplateRole::kTip)) next[*parent] = j;
-  }
-  const Vec3 front = frame.axes.row(2).transpose(), up = frame.axes.row(1).transpose();
-  std::vector<Affine> globals(count);
-  std::vector<std::optional<Index>> kept(count);
-  Skeleton result;
-  for (Index j = 0; j < count; ++j) {
-    const TemplateJoint& from = skeleton.joints[j];
-    if (from.role == TemplateRole::kTip) continue;
-    const Vec3 position = frame.fromBody(positions[j]);
-    Vec3 bone = next[j] ? Vec3(frame.fromBody(positions[*next[j]]) - position) : Vec3(Vec3::Zero());
-    if (!(bone.norm() > 1e-9)) bone = from.parent ? Vec3(globals[*from.parent].linear().col(1)) : up;
-    const Vec3 y = bone.normalized();
-    const Vec3& toward = std::abs(y.dot(front)) > std::cos(kPi / 6) ? up : front;
-    const Vec3 z = (toward - toward.dot(y) * y).normalized();
-    Mat3 rotation;
-    rotation << y.cross(z), y, z;
-    globals[j].linear() = rotation;
-    globals[j].translation() = position;
-    globals[j].makeAffine();
-    Joint joint;
-    joint.name = from.name;
-    if (from.parent) joint.parent = kept[*from.parent];
-    const Affine above = from.parent ? globals[*from.parent] : Affine::Identity();
-    joint.rest = decompose(above.inverse(Eigen::Isometry) * globals[j]);
-    joint.rest.scale = Vec3::Ones();
-    kept[j] = result.jointCount();
-    result.joints.push_back(std::move(joint));
-  }
-  return result;
-}
-
 TemplateFit fitTemplate(std::string_view name, const TriMesh& mesh, const ReadingWeights& weights) {
   RigOptions options;
   options.reading = std::make_shared<const ReadingWeights>(weights);
@@ -436,7 +272,7 @@ TemplateFit fitTemplate(std::string_view name, const TriMesh& mesh, const Readin
   RoleReading reading(measured->samples, weights, measured->frame);
   if (measured->frame.symmetric()) reading.makeSymmetric();
   RoledSkeleton made = skeletonNamed(name, reading);
-  std::vector<Vec3> positions = placed(made, reading, TemplatePins(made.skeleton.joints.size()));
+  std::vector<Vec3> positions = placedJoints(made, reading, TemplatePins(made.skeleton.joints.size()));
   return {std::move(made.skeleton), measured->frame, std::move(positions)};
 }
 
@@ -475,8 +311,10 @@ AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress
     pins = pinsIn(made.skeleton, frame, options.pins);
   }
   if (frame.symmetric() && pinnedEvenly(made.skeleton, pins)) reading.makeSymmetric();
-  std::vector<Vec3> positions = placed(made, reading, pins);
-  refine(made, measured->body, reading, pins, positions);
+  const std::optional<std::string_view> plan =
+      options.templateSkeleton ? planOf(readAnatomy(*options.templateSkeleton)) : planOfKind(kind);
+  refineRoles(plan.value_or("none"), measured->body, reading);
+  const std::vector<Vec3> positions = placedJoints(made, reading, pins);
 
   AutoRig rig;
   rig.skeleton = standingSkeleton(made.skeleton, positions, frame);
@@ -486,8 +324,6 @@ AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress
   }
   rig.up = frame.axes.row(1).transpose();
   if (matches.empty()) {
-    const std::optional<std::string_view> plan =
-        options.templateSkeleton ? planOf(readAnatomy(*options.templateSkeleton)) : planOfKind(kind);
     matches = {{kind, confidenceOf(plan ? reading.probability(*plan) : 1, made, reading)}};
   }
   rig.doubts = doubtsOf(made, reading, pins);

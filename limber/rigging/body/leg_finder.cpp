@@ -9,7 +9,6 @@ namespace {
 
 constexpr double kLegSeedReach = 0.04;  // heights
 constexpr double kLowestParting = 0.3;  // of the height from ankle to hip as read: legs that part lower are no legs
-constexpr double kHockBehind = 0.05;    // heights
 constexpr int kStaysTogether = 3;       // cuts
 
 }  // namespace
@@ -67,22 +66,6 @@ Vec3 LegFinder::middle(int side, double y) const {
   }
   return weights > 1e-6 ? Vec3(sum.x() / weights, y, sum.z() / weights)
                         : Vec3(cuts.front().center.x(), y, cuts.front().center.z());
-}
-
-std::optional<Vec3> LegFinder::hock(int side) const {
-  const Vec3 &knee = positions_[legs_[side].knee], &ankle = positions_[legs_[side].ankle];
-  std::optional<Vec3> hock;
-  double farthest = kHockBehind;
-  for (const BodySection& cut : sections_[side]) {
-    const double part = (cut.center.y() - ankle.y()) / std::max(knee.y() - ankle.y(), 1e-3);
-    if (part < 0 || part > 1) continue;
-    const Vec3 bone = ankle + part * (knee - ankle);
-    const double behind = bone.z() - cut.center.z();
-    if (behind <= farthest || body_.distance->at(frame_.fromBody(bone)) < 0) continue;
-    farthest = behind;
-    hock = cut.center;
-  }
-  return hock;
 }
 
 // Upwards from the last cut; first on the shin as it was read.

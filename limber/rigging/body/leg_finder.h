@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <vector>
 
 #include "limber/rigging/body/body_section.h"
@@ -36,10 +35,6 @@ class LegFinder {
 
   // The middle of the leg at a height; above where it parts as just below.
   Vec3 middle(int side, double y) const;
-
-  // Where the middle of the leg lies farthest behind the straight bone from knee to ankle, if that lies outside the
-  // body there: the hock of legs that bend back below the knee.
-  std::optional<Vec3> hock(int side) const;
 
  private:
   Vec3 seed(int side, double y) const;

@@ -77,6 +77,15 @@ std::size_t RoleReading::fingers(Side side) const {
   return static_cast<std::size_t>(reading_.fingers[side == Side::kLeft ? 0 : 1].count);
 }
 
+bool RoleReading::isKnown(std::string_view role) const {
+  return reading_.joints[roleOf(role)].known;
+}
+
+void RoleReading::move(std::string_view role, const Vec3& displacement) {
+  LearnedJoint& joint = reading_.joints[roleOf(role)];
+  if (!joint.known) joint.position += frame_.height * displacement;
+}
+
 void RoleReading::makeSymmetric() {
   const std::vector<LearnedJoint> before = reading_.joints;
   const double plane = origin_.x();

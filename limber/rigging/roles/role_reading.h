@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "limber/reading/learned_reading.h"
 #include "limber/rigging/body/anatomical_frame.h"
@@ -32,6 +33,11 @@ class RoleReading {
 
   double probability(std::string_view plan) const;
   std::size_t fingers(Side side) const;
+
+  const std::vector<std::string>& roles() const { return weights_->roles; }
+  bool isKnown(std::string_view role) const;
+  // Known roles stay.
+  void move(std::string_view role, const Vec3& displacement);
 
   // One reading of both sides: each joint's position is the mean of it and of the mirror image of the other side's.
   void makeSymmetric();

@@ -214,23 +214,4 @@ void refineHumanoid(const TemplateSkeleton& skeleton, const BodyVolume& body, co
   if (mover.isUpright(joints->hips, joints->neck)) mover.trunk(*joints);
 }
 
-void refineHocks(const TemplateSkeleton& skeleton, const BodyVolume& body, const AnatomicalFrame& frame,
-                 const std::vector<std::optional<Vec3>>& pins, std::vector<Vec3>& positions) {
-  const std::optional<HumanoidJoints> joints = humanoidJointsOf(skeleton);
-  if (!joints) return;
-  LegFinder finder(body, frame, positions, joints->legs[0], joints->legs[1]);
-  finder.findParting();
-  const std::array<std::optional<Vec3>, 2> hocks = {finder.hock(0), finder.hock(1)};
-  if (!hocks[0] || !hocks[1]) return;
-  for (int side = 0; side < 2; ++side) {
-    const Index foot = joints->legs[side].ankle;
-    const std::optional<Index> toes = skeleton.find(side == 0 ? "leftToes" : "rightToes");
-    if (pins[foot]) continue;
-    // On from the hock in the direction of its bone's upper half: below, feet spread to both sides.
-    const Vec3 half = finder.middle(side, 0.5 * (hocks[side]->y() + positions[foot].y()));
-    if (toes && !pins[*toes]) positions[*toes] = 2 * half - *hocks[side];
-    positions[foot] = *hocks[side];
-  }
-}
-
 }  // namespace limber

@@ -34,9 +34,4 @@ void refineHumanoid(const TemplateSkeleton& skeleton, const BodyVolume& body, co
                     const std::vector<std::optional<Vec3>>& pins, std::vector<Vec3>& positions,
                     const HumanoidProportions& proportions = {});
 
-// After refineHumanoid and placeBetween. Legs that bend back below the knee, as animals' on two legs do: feet go from
-// the ground up to the hocks, and toes to where the bone from there comes to the ground. Only where both legs show one.
-void refineHocks(const TemplateSkeleton& skeleton, const BodyVolume& body, const AnatomicalFrame& frame,
-                 const std::vector<std::optional<Vec3>>& pins, std::vector<Vec3>& positions);
-
 }  // namespace limber

@@ -1,0 +1,71 @@
+#include "limber/rigging/roles/roled_templates.h"
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "limber/character/anatomy/anatomy.h"
+#include "limber/rigging/templates/standing_skeleton.h"
+
+namespace limber {
+
+namespace {
+
+bool hasRaisedHeels(const RoleReading& reading) {
+  return reading.has("hind_hock.L") && reading.has("hind_hock.R");
+}
+
+// Of skeletons without heels of their own: feet are at the heels, toes where the feet were.
+void raiseHeels(RoledSkeleton& made) {
+  const auto isHeel = [](const auto& role) { return role && role->from.starts_with("hind_hock"); };
+  if (std::any_of(made.roles.begin(), made.roles.end(), isHeel)) return;
+  for (std::optional<RolePosition>& role : made.roles) {
+    if (!role || !role->isRole()) continue;
+    const std::string side = role->from.substr(role->from.size() - 2);
+    if (role->from == "hind_end" + side) {
+      role = {"hind_hock" + side, "hind_hock" + side, 0};
+    } else if (role->from == "hind_toes" + side) {
+      role = {"hind_end" + side, "hind_end" + side, 0};
+    }
+  }
+}
+
+}  // namespace
+
+RoledSkeleton templateWithRoles(std::string_view name, const RoleReading& reading) {
+  const TemplateSkeleton& skeleton = findTemplate(name);
+  std::vector<Vec3> positions;
+  for (const TemplateJoint& joint : skeleton.joints) positions.push_back(joint.position);
+  const Skeleton rest = standingSkeleton(skeleton, positions, {});
+  const std::vector<std::optional<RolePosition>> roles = jointRoles(rest, readAnatomy(rest));
+  // Tips are among the template's joints, and no joints of the rest pose.
+  RoledSkeleton made = {skeleton, {}};
+  Index next = 0;
+  for (TemplateJoint& joint : made.skeleton.joints) {
+    if (joint.role == TemplateRole::kTip) {
+      made.roles.push_back(made.roles[*joint.parent]);
+    } else {
+      made.roles.push_back(roles[next++]);
+      joint.role = made.roles.back() ? TemplateRole::kPlaced : TemplateRole::kBetween;
+    }
+  }
+  if (hasRaisedHeels(reading)) raiseHeels(made);
+  return made;
+}
+
+// A user's, rotated to stand as templates do.
+RoledSkeleton ownWithRoles(const Skeleton& skeleton, std::string_view name) {
+  const Anatomy anatomy = readAnatomy(skeleton);
+  Mat3 axes;
+  axes << anatomy.axes.left().transpose(), anatomy.axes.up.transpose(), anatomy.axes.front.transpose();
+  Skeleton standing = skeleton;
+  for (Joint& joint : standing.joints) {
+    if (joint.parent) continue;
+    joint.rest.translation = axes * joint.rest.translation;
+    joint.rest.rotation = Quat(axes) * joint.rest.rotation;
+  }
+  return withRoles(templateFrom(standing, name), standing, anatomy);
+}
+
+}  // namespace limber

@@ -1,0 +1,19 @@
+// Skeletons whose joints are given, limber's and users', with the roles of their joints.
+#pragma once
+
+#include <string_view>
+
+#include "limber/rigging/roles/body_kinds.h"
+#include "limber/rigging/roles/role_reading.h"
+
+namespace limber {
+
+// One of templateSkeletons(). Where the reading has raised heels, as animals on two legs have them, the feet of a
+// person are there, and the toes where the legs come to the ground.
+// Throws Error kBadArgument for a name that there is not.
+RoledSkeleton templateWithRoles(std::string_view name, const RoleReading& reading);
+
+// A user's skeleton, whatever its rest pose and orientation. Throws Error as templateFrom does.
+RoledSkeleton ownWithRoles(const Skeleton& skeleton, std::string_view name);
+
+}  // namespace limber
