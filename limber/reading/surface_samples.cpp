@@ -166,7 +166,7 @@ SurfaceSamples sampleSurface(const TriMesh& mesh, std::size_t count) {
   for (const std::size_t i : chosen) {
     const Index component = measured.componentOfVertex[mesh.triangles[points[i].triangle][0]];
     const double fraction = measured.componentAreas[component] / measured.cumulativeAreas.back();
-    result.samples.push_back({points[i].position, points[i].normal, 0, fraction});
+    result.samples.push_back({points[i].position, points[i].normal, 0, fraction, points[i].triangle});
   }
   measureBalls(points, chosen, result);
   measureFrame(result);

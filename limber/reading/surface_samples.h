@@ -13,6 +13,7 @@ struct SurfaceSample {
   Vec3 normal;                   // of the triangle; out of the body, whichever way round the mesh has its triangles
   double innerRadius = 0;        // of the largest ball that touches the surface here from inside
   double componentFraction = 0;  // area of the connected component it lies on, over all area
+  Index triangle = 0;            // of the mesh, on which it lies
 };
 
 struct SurfaceSamples {

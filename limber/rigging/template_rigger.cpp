@@ -1,46 +1,25 @@
 #include "limber/rigging/template_rigger.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 
 #include <fmt/format.h>
 
-#include "limber/character/anatomy/anatomy.h"
 #include "limber/core/known_error.h"
 #include "limber/geometry/mesh/model_box.h"
-#include "limber/geometry/surface/stray_pieces.h"
-#include "limber/reading/learned_reading.h"
-#include "limber/reading/shape_weights.h"
-#include "limber/rigging/body/body_volume.h"
-#include "limber/rigging/roles/body_kinds.h"
-#include "limber/rigging/roles/likeliest_frame.h"
+#include "limber/rigging/kind_choice.h"
+#include "limber/rigging/measured_model.h"
 #include "limber/rigging/roles/placed_joints.h"
 #include "limber/rigging/roles/refined_roles.h"
-#include "limber/rigging/roles/role_reading.h"
 #include "limber/rigging/roles/roled_templates.h"
 #include "limber/rigging/sphere_mesh_rigger.h"
-#include "limber/rigging/templates/limb_chains.h"
 #include "limber/rigging/templates/standing_skeleton.h"
 
 namespace limber {
 
-// What does not depend on the skeleton that is asked for.
-struct MeasuredModel {
-  Index vertices = 0, triangles = 0;  // of the mesh
-  std::optional<Vec3> up, front;      // as they were given
-  std::shared_ptr<const ReadingWeights> weights;
-  std::optional<TriMesh> cleared;  // of stray pieces; none where the mesh has none
-  BodyVolume body;
-  SurfaceSamples samples;
-  AnatomicalFrame frame;
-};
-
 namespace {
 
-constexpr double kDoubtfulJoint = 0.05;   // expected error, heights
-constexpr double kWorthNaming = 0.01;     // confidence of a kind that is told beside the likeliest
-constexpr double kMissing = 100;          // above any error
+constexpr double kWorthNaming = 0.01;  // confidence of a kind that is told beside the likeliest
 
 // Each joint once, and where the model may be: the model's size beyond its box is another unit.
 void checkPins(const TriMesh& mesh, const std::vector<JointPin>& pins) {
@@ -60,73 +39,6 @@ void checkPins(const TriMesh& mesh, const std::vector<JointPin>& pins) {
     }
   }
 }
-
-std::shared_ptr<const MeasuredModel> measure(const TriMesh& mesh, const RigOptions& options,
-                                             const std::shared_ptr<const ReadingWeights>& weights) {
-  if (options.memory && options.memory->measured) {
-    const MeasuredModel& known = *options.memory->measured;
-    const bool isSame = known.vertices == mesh.vertexCount() && known.triangles == mesh.triangleCount();
-    const bool isAskedAlike = known.up == options.up && known.front == options.front && known.weights == weights;
-    if (isSame && isAskedAlike) return options.memory->measured;
-  }
-  auto model = std::make_shared<MeasuredModel>();
-  model->vertices = mesh.vertexCount();
-  model->triangles = mesh.triangleCount();
-  model->up = options.up;
-  model->front = options.front;
-  model->weights = weights;
-  model->cleared = withoutStrays(mesh);
-  const TriMesh& surface = model->cleared ? *model->cleared : mesh;
-  model->body = measureBody(surface);
-  model->samples = sampleSurface(surface, weights->sampleCount());
-  model->frame = likeliestFrame(possibleFrames(surface, model->body, options.up, options.front),
-                                stanceOf(model->samples, *weights));
-  if (options.memory) options.memory->measured = model;
-  return model;
-}
-
-// ---- which skeleton
-
-bool hasFingers(const RoleReading& reading) {
-  return reading.fingers(Side::kLeft) + reading.fingers(Side::kRight) >= 8;
-}
-
-// What a plan gets where the user leaves the choice.
-std::string kindOfPlan(std::string_view plan, const RoleReading& reading) {
-  if (plan == "upright") return hasFingers(reading) ? "humanoid-fingers" : "humanoid";
-  if (plan == "four") return "quadruped";
-  if (plan == "bird") return "bird";
-  if (plan == "many") return reading.has("midb_upper.L") && reading.has("midb_upper.R") ? "spider" : "insect";
-  for (const BodyKind& kind : bodyKinds()) {
-    if (kind.plan == plan) return std::string(kind.name);
-  }
-  return {};
-}
-
-std::string_view planOfKind(std::string_view name) {
-  if (const BodyKind* kind = findBodyKind(name)) return kind->plan;
-  if (name == "quadruped") return "four";
-  return name == "bird" ? "bird" : "upright";
-}
-
-// The plan that a user's skeleton has; none where it shows no limbs.
-std::optional<std::string_view> planOf(const Anatomy& anatomy) {
-  const Index legs = anatomy.pairsOf(PartKind::kLeg);
-  const bool hasWings = anatomy.pairsOf(PartKind::kWing) > 0, hasArms = anatomy.pairsOf(PartKind::kArm) > 0;
-  if (legs > 2) return "many";
-  if (legs == 2) return hasWings ? "winged_four" : "four";
-  if (hasWings && !hasArms) return "bird";
-  if (legs == 1 || hasArms) return "upright";
-  if (anatomy.pairsOf(PartKind::kFin) > 0) return "swims";
-  return std::nullopt;
-}
-
-RoledSkeleton skeletonNamed(std::string_view name, const RoleReading& reading) {
-  const BodyKind* kind = findBodyKind(name);
-  return kind ? skeletonOfKind(*kind, reading) : templateWithRoles(name, reading);
-}
-
-// ---- its joints in the body
 
 TemplatePins pinsIn(const TemplateSkeleton& skeleton, const AnatomicalFrame& frame, const std::vector<JointPin>& pins) {
   TemplatePins positions(skeleton.jointCount());
@@ -151,67 +63,6 @@ std::map<std::string, Vec3> knownRoles(const RoledSkeleton& made, const Template
     if (pins[j] && made.roles[j] && made.roles[j]->isRole()) known[made.roles[j]->from] = *pins[j];
   }
   return known;
-}
-
-// ---- how sure it is, and what to say of it
-
-std::vector<TemplateLimb> limbsOf(const RoledSkeleton& made, const RoleReading& reading) {
-  std::vector<TemplateLimb> limbs = limbChains(made.skeleton);
-  for (TemplateLimb& limb : limbs) {
-    bool hasRole = false, isThere = false;
-    for (const Index joint : limb.joints) {
-      // Few hands show their fingers: that they are not seen says nothing.
-      if (!made.roles[joint] || made.roles[joint]->from.starts_with("finger")) continue;
-      hasRole = true;
-      isThere = isThere || reading.has(made.roles[joint]->from) || reading.has(made.roles[joint]->to);
-    }
-    limb.isThere = isThere || !hasRole;
-  }
-  return limbs;
-}
-
-// Of the plan, and the less the more limbs the body lacks.
-double confidenceOf(double planProbability, const RoledSkeleton& made, const RoleReading& reading) {
-  const std::vector<TemplateLimb> limbs = limbsOf(made, reading);
-  double there = 0;
-  for (const TemplateLimb& limb : limbs) there += limb.isThere ? 1.0 / static_cast<double>(limbs.size()) : 0;
-  return planProbability * there * there * there;
-}
-
-std::vector<TemplateMatch> matchesOf(const RoleReading& reading, const ReadingWeights& weights) {
-  std::vector<TemplateMatch> matches;
-  for (const std::string& plan : weights.plans) {
-    const std::string kind = kindOfPlan(plan, reading);
-    if (kind.empty()) continue;
-    matches.push_back({kind, confidenceOf(reading.probability(plan), skeletonNamed(kind, reading), reading)});
-  }
-  std::stable_sort(matches.begin(), matches.end(),
-                   [](const TemplateMatch& a, const TemplateMatch& b) { return a.confidence > b.confidence; });
-  return matches;
-}
-
-// Ends of limbs whose joints may be farthest from the truth, one of each pair, first things first; those that the body
-// lacks come before all.
-std::vector<std::string> doubtsOf(const RoledSkeleton& made, const RoleReading& reading, const TemplatePins& pins) {
-  const std::vector<TemplateJoint>& joints = made.skeleton.joints;
-  struct Doubt {
-    Index joint;
-    double error;
-  };
-  std::vector<Doubt> doubts;
-  for (const TemplateLimb& limb : limbsOf(made, reading)) {
-    const Index end = limb.joints.back();
-    const std::optional<Index> mirror = joints[end].mirror;
-    if (!made.roles[end] || made.roles[end]->from.starts_with("finger")) continue;
-    if (pins[end] || (mirror && pins[*mirror]) || joints[end].name.starts_with("right")) continue;
-    doubts.push_back({end, (limb.isThere ? 0 : kMissing) + reading.expectedError(*made.roles[end])});
-  }
-  std::stable_sort(doubts.begin(), doubts.end(), [](const Doubt& a, const Doubt& b) { return a.error > b.error; });
-  std::vector<std::string> names;
-  for (const Doubt& doubt : doubts) {
-    if (names.size() < kMaxDoubts && doubt.error > kDoubtfulJoint) names.push_back(joints[doubt.joint].name);
-  }
-  return names;
 }
 
 // Pinned joints are some template's: whoever pins one has chosen.
@@ -268,7 +119,7 @@ void checkTemplateName(std::string_view name) {
 TemplateFit fitTemplate(std::string_view name, const TriMesh& mesh, const ReadingWeights& weights) {
   RigOptions options;
   options.reading = std::make_shared<const ReadingWeights>(weights);
-  const std::shared_ptr<const MeasuredModel> measured = measure(mesh, options, options.reading);
+  const std::shared_ptr<const MeasuredModel> measured = measureModel(mesh, options);
   RoleReading reading(measured->samples, weights, measured->frame);
   if (measured->frame.symmetric()) reading.makeSymmetric();
   RoledSkeleton made = skeletonNamed(name, reading);
@@ -279,16 +130,16 @@ TemplateFit fitTemplate(std::string_view name, const TriMesh& mesh, const Readin
 AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress& progress) {
   if (!options.templateSkeleton) checkTemplateName(options.templateName);
   checkPins(mesh, options.pins);
-  const std::shared_ptr<const ReadingWeights> weights = options.reading ? options.reading : shapeWeights();
   progress.step("measure body");
-  const std::shared_ptr<const MeasuredModel> measured = measure(mesh, options, weights);
+  const std::shared_ptr<const MeasuredModel> measured = measureModel(mesh, options);
+  const ReadingWeights& weights = *measured->weights;
   const AnatomicalFrame& frame = measured->frame;
   progress.step("read shape");
-  RoleReading reading(measured->samples, *weights, frame);
+  RoleReading reading(measured->samples, weights, frame);
   std::vector<TemplateMatch> matches;
   std::string kind = options.templateName;
   if (kind == "auto" && !options.templateSkeleton) {
-    matches = matchesOf(reading, *weights);
+    matches = matchesOf(reading, weights);
     if (options.mayAbstain && leavesTheChoice(options) && matches.front().confidence < kLikelyTemplate) {
       AutoRig rig = withHandles(mesh, options, matches.front(), progress);
       dropUnlikely(matches);
@@ -306,7 +157,7 @@ AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress
   RoledSkeleton made = skeletonFor();
   TemplatePins pins = pinsIn(made.skeleton, frame, options.pins);
   if (!options.pins.empty()) {
-    reading = RoleReading(measured->samples, *weights, frame, knownRoles(made, pins));
+    reading = RoleReading(measured->samples, weights, frame, knownRoles(made, pins));
     made = skeletonFor();
     pins = pinsIn(made.skeleton, frame, options.pins);
   }

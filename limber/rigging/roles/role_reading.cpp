@@ -68,6 +68,10 @@ std::optional<Vec3> RoleReading::boneEnd(std::string_view part, const Vec3& star
   return weight < kFewestSamples ? std::nullopt : std::optional<Vec3>(sum / weight);
 }
 
+std::string_view RoleReading::partOf(std::size_t sample) const {
+  return weights_->parts[reading_.samples[sample].part];
+}
+
 double RoleReading::probability(std::string_view plan) const {
   const std::optional<Index> index = indexOf(weights_->plans, plan);
   return index ? reading_.planProbabilities[*index] : 0;

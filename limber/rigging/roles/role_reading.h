@@ -31,6 +31,10 @@ class RoleReading {
   // hardly any do.
   std::optional<Vec3> boneEnd(std::string_view part, const Vec3& start) const;
 
+  // By the sample: its part's name.
+  std::string_view partOf(std::size_t sample) const;
+  const SurfaceSamples& samples() const { return reading_.surface; }
+
   double probability(std::string_view plan) const;
   std::size_t fingers(Side side) const;
 

@@ -1,0 +1,111 @@
+#include "limber/rigging/kind_choice.h"
+
+#include <algorithm>
+
+#include "limber/rigging/roles/roled_templates.h"
+
+namespace limber {
+
+namespace {
+
+constexpr std::size_t kFingersOfHands = 8;  // of both together, from which on they get fingers
+constexpr double kDoubtfulJoint = 0.05;     // expected error, heights
+constexpr double kMissing = 100;            // above any error
+
+bool hasFingers(const RoleReading& reading) {
+  return reading.fingers(Side::kLeft) + reading.fingers(Side::kRight) >= kFingersOfHands;
+}
+
+// What a plan gets where the user leaves the choice.
+std::string kindOfPlan(std::string_view plan, const RoleReading& reading) {
+  if (plan == "upright") return hasFingers(reading) ? "humanoid-fingers" : "humanoid";
+  if (plan == "four") return "quadruped";
+  if (plan == "bird") return "bird";
+  if (plan == "many") return reading.has("midb_upper.L") && reading.has("midb_upper.R") ? "spider" : "insect";
+  for (const BodyKind& kind : bodyKinds()) {
+    if (kind.plan == plan) return std::string(kind.name);
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string_view planOfKind(std::string_view kind) {
+  if (const BodyKind* adapted = findBodyKind(kind)) return adapted->plan;
+  if (kind == "quadruped") return "four";
+  return kind == "bird" ? "bird" : "upright";
+}
+
+std::optional<std::string_view> planOf(const Anatomy& anatomy) {
+  const Index legs = anatomy.pairsOf(PartKind::kLeg);
+  const bool hasWings = anatomy.pairsOf(PartKind::kWing) > 0, hasArms = anatomy.pairsOf(PartKind::kArm) > 0;
+  if (legs > 2) return "many";
+  if (legs == 2) return hasWings ? "winged_four" : "four";
+  if (hasWings && !hasArms) return "bird";
+  if (legs == 1 || hasArms) return "upright";
+  if (anatomy.pairsOf(PartKind::kFin) > 0) return "swims";
+  return std::nullopt;
+}
+
+RoledSkeleton skeletonNamed(std::string_view kind, const RoleReading& reading) {
+  const BodyKind* adapted = findBodyKind(kind);
+  return adapted ? skeletonOfKind(*adapted, reading) : templateWithRoles(kind, reading);
+}
+
+std::vector<TemplateLimb> limbsOf(const RoledSkeleton& made, const RoleReading& reading) {
+  std::vector<TemplateLimb> limbs = limbChains(made.skeleton);
+  for (TemplateLimb& limb : limbs) {
+    bool hasRole = false, isThere = false;
+    for (const Index joint : limb.joints) {
+      // Few hands show their fingers: that they are not seen says nothing.
+      if (!made.roles[joint] || made.roles[joint]->from.starts_with("finger")) continue;
+      hasRole = true;
+      isThere = isThere || reading.has(made.roles[joint]->from) || reading.has(made.roles[joint]->to);
+    }
+    limb.isThere = isThere || !hasRole;
+  }
+  return limbs;
+}
+
+double confidenceOf(double planProbability, const RoledSkeleton& made, const RoleReading& reading) {
+  const std::vector<TemplateLimb> limbs = limbsOf(made, reading);
+  double there = 0;
+  for (const TemplateLimb& limb : limbs) there += limb.isThere ? 1.0 / static_cast<double>(limbs.size()) : 0;
+  return planProbability * there * there * there;
+}
+
+std::vector<TemplateMatch> matchesOf(const RoleReading& reading, const ReadingWeights& weights) {
+  std::vector<TemplateMatch> matches;
+  for (const std::string& plan : weights.plans) {
+    const std::string kind = kindOfPlan(plan, reading);
+    if (kind.empty()) continue;
+    matches.push_back({kind, confidenceOf(reading.probability(plan), skeletonNamed(kind, reading), reading)});
+  }
+  std::stable_sort(matches.begin(), matches.end(),
+                   [](const TemplateMatch& a, const TemplateMatch& b) { return a.confidence > b.confidence; });
+  return matches;
+}
+
+std::vector<std::string> doubtsOf(const RoledSkeleton& made, const RoleReading& reading, const TemplatePins& pins) {
+  const std::vector<TemplateJoint>& joints = made.skeleton.joints;
+  struct Doubt {
+    Index joint;
+    double error;
+  };
+  std::vector<Doubt> doubts;
+  for (const TemplateLimb& limb : limbsOf(made, reading)) {
+    const Index end = limb.joints.back();
+    const std::optional<Index> mirror = joints[end].mirror;
+    if (!made.roles[end] || made.roles[end]->from.starts_with("finger")) continue;
+    if (pins[end] || (mirror && pins[*mirror]) || joints[end].name.starts_with("right")) continue;
+    doubts.push_back({end, (limb.isThere ? 0 : kMissing) + reading.expectedError(*made.roles[end])});
+  }
+  std::stable_sort(doubts.begin(), doubts.end(), [](const Doubt& a, const Doubt& b) { return a.error > b.error; });
+  std::vector<std::string> names;
+  for (const Doubt& doubt : doubts) {
+    if (names.size() < kMaxDoubts && doubt.error > kDoubtfulJoint) names.push_back(joints[doubt.joint].name);
+  }
+  return names;
+}
+
+}  // namespace limber

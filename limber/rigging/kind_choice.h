@@ -1,0 +1,38 @@
+// Which skeletons suit a reading, and how sure that is.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "limber/character/anatomy/anatomy.h"
+#include "limber/rigging/auto_rigger.h"
+#include "limber/rigging/roles/body_kinds.h"
+#include "limber/rigging/roles/role_reading.h"
+#include "limber/rigging/templates/limb_chains.h"
+
+namespace limber {
+
+// Plans are those of ReadingWeights::plans; kinds the names of namedTemplates().
+std::string_view planOfKind(std::string_view kind);
+// The plan that a user's skeleton has; none where it shows no limbs.
+std::optional<std::string_view> planOf(const Anatomy& anatomy);
+
+// The skeleton of that kind for the body.
+RoledSkeleton skeletonNamed(std::string_view kind, const RoleReading& reading);
+
+// All limbs of the skeleton, with what the reading says of whether the body has them.
+std::vector<TemplateLimb> limbsOf(const RoledSkeleton& made, const RoleReading& reading);
+
+// The plan's probability, and the less the more limbs the body lacks.
+double confidenceOf(double planProbability, const RoledSkeleton& made, const RoleReading& reading);
+
+// For each plan that gets a skeleton the kind that suits the body, the likeliest first.
+std::vector<TemplateMatch> matchesOf(const RoleReading& reading, const ReadingWeights& weights);
+
+// Ends of limbs whose joints may be farthest from the truth, one of each pair, kMaxDoubts at most, first things first;
+// those that the body lacks come before all, pinned ones are left out.
+std::vector<std::string> doubtsOf(const RoledSkeleton& made, const RoleReading& reading, const TemplatePins& pins);
+
+}  // namespace limber

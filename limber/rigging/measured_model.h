@@ -1,0 +1,29 @@
+// What the template rigger measures of a model, whatever skeleton is asked for.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "limber/reading/surface_samples.h"
+#include "limber/reading/weights_file.h"
+#include "limber/rigging/auto_rigger.h"
+#include "limber/rigging/body/anatomical_frame.h"
+#include "limber/rigging/body/body_volume.h"
+
+namespace limber {
+
+struct MeasuredModel {
+  Index vertices = 0, triangles = 0;  // of the mesh
+  std::optional<Vec3> up, front;      // as they were given
+  std::shared_ptr<const ReadingWeights> weights;
+  std::optional<TriMesh> cleared;  // of stray pieces (withoutStrays); none where the mesh has none
+  BodyVolume body;
+  SurfaceSamples samples;
+  AnatomicalFrame frame;
+};
+
+// Reads up, front and networks of the options (shapeWeights where they have none); asks their memory first, and leaves
+// the result there. Throws Error as measureBody and sampleSurface do.
+std::shared_ptr<const MeasuredModel> measureModel(const TriMesh& mesh, const RigOptions& options);
+
+}  // namespace limber

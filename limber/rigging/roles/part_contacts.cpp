@@ -1,0 +1,118 @@
+#include "limber/rigging/roles/part_contacts.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "limber/core/shortest_paths.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kHolds = 0.04;  // heights of a border: shorter ones are where samples of two parts lie close
+
+std::vector<std::vector<Index>> neighboursOf(const TriMesh& mesh) {
+  std::vector<std::vector<Index>> neighbours(mesh.vertexCount());
+  for (const Triangle& t : mesh.triangles) {
+    for (int i = 0; i < 3; ++i) {
+      neighbours[t[i]].push_back(t[(i + 1) % 3]);
+      neighbours[t[(i + 1) % 3]].push_back(t[i]);
+    }
+  }
+  return neighbours;
+}
+
+// The sample that is nearest to each vertex along edges; none on components without a sample.
+std::vector<std::optional<std::size_t>> nearestSamples(const TriMesh& mesh, const std::vector<SurfaceSample>& samples,
+                                                       const Mat3& toMesh) {
+  const std::vector<std::vector<Index>> neighbours = neighboursOf(mesh);
+  std::vector<double> distances(mesh.vertexCount(), std::numeric_limits<double>::infinity());
+  std::vector<std::optional<std::size_t>> nearest(mesh.vertexCount());
+  std::vector<Index> sources;
+  for (std::size_t s = 0; s < samples.size(); ++s) {
+    for (const Index v : mesh.triangles[samples[s].triangle]) {
+      const double distance = (mesh.position(v) - toMesh * samples[s].position).norm();
+      if (!(distance < distances[v])) continue;
+      distances[v] = distance;
+      nearest[v] = s;
+      sources.push_back(v);
+    }
+  }
+  const auto forEachNeighbour = [&](Index v, const auto& visit) {
+    for (const Index next : neighbours[v]) visit(next, (mesh.position(next) - mesh.position(v)).norm());
+  };
+  shortenPaths<Index>(sources, distances, forEachNeighbour, [&](Index from, Index to) { nearest[to] = nearest[from]; });
+  return nearest;
+}
+
+struct PartName {
+  std::string_view limb, segment, side;  // "fore", "upper", ".L"; all but the first may be empty
+};
+
+PartName parsed(std::string_view part) {
+  PartName name;
+  if (part.ends_with(".L") || part.ends_with(".R")) {
+    name.side = part.substr(part.size() - 2);
+    part.remove_suffix(2);
+  }
+  const std::size_t end = part.find('_');
+  name.limb = part.substr(0, end);
+  if (end != std::string_view::npos) name.segment = part.substr(end + 1);
+  return name;
+}
+
+bool isAnyPart(std::string_view limb) {
+  return limb == "other" || limb == "prop" || limb == "ear" || limb == "wing" || limb == "fin" || limb == "mid";
+}
+
+// Whether bodies have these next to each other.
+bool areNeighbours(std::string_view onePart, std::string_view otherPart) {
+  const PartName one = parsed(onePart), other = parsed(otherPart);
+  if (isAnyPart(one.limb) || isAnyPart(other.limb)) return true;
+  if (one.limb == other.limb && one.side == other.side) {
+    return (one.segment == "lower") != (other.segment == "lower") || one.segment == other.segment;
+  }
+  const auto isTrunk = [](const PartName& part) {
+    return part.limb == "trunk" || part.limb == "neck" || part.limb == "head" || part.limb == "tail";
+  };
+  if (isTrunk(one) && isTrunk(other)) return true;
+  if (isTrunk(one)) return other.segment == "upper" && one.limb != "head";
+  if (isTrunk(other)) return one.segment == "upper" && other.limb != "head";
+  return one.segment == "upper" && other.segment == "upper";  // where legs part, and at the shoulders of animals
+}
+
+}  // namespace
+
+std::vector<PartContact> grownTogether(const TriMesh& mesh, const RoleReading& reading) {
+  const AnatomicalFrame& frame = reading.frame();
+  const std::vector<std::optional<std::size_t>> nearest =
+      nearestSamples(mesh, reading.samples().samples, frame.axes.transpose());
+  std::map<std::pair<std::string, std::string>, double> lengths;
+  for (const Triangle& t : mesh.triangles) {
+    if (!nearest[t[0]] || !nearest[t[1]] || !nearest[t[2]]) continue;
+    std::array<std::string_view, 3> parts;
+    for (int i = 0; i < 3; ++i) parts[i] = reading.partOf(*nearest[t[i]]);
+    // The border runs between the middles of the two edges that cross it; it is shared by both parts of one corner.
+    for (int i = 0; i < 3; ++i) {
+      const int next = (i + 1) % 3, last = (i + 2) % 3;
+      if (parts[i] == parts[next] || parts[i] == parts[last] || parts[next] != parts[last]) continue;
+      if (areNeighbours(parts[i], parts[next])) continue;
+      const auto [one, other] = std::minmax({std::string(parts[i]), std::string(parts[next])});
+      lengths[{one, other}] += 0.5 * (mesh.position(t[next]) - mesh.position(t[last])).norm() / frame.height;
+    }
+  }
+  std::vector<PartContact> contacts;
+  for (const auto& [parts, length] : lengths) {
+    if (length > kHolds) contacts.push_back({parts.first, parts.second, length});
+  }
+  std::stable_sort(contacts.begin(), contacts.end(),
+                   [](const PartContact& a, const PartContact& b) { return a.length > b.length; });
+  return contacts;
+}
+
+}  // namespace limber
