@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::size_t kFingersOfHands = 8;  // of both together, from which on they get fingers
 constexpr double kDoubtfulJoint = 0.05;     // expected error, heights
+constexpr double kWorthNaming = 0.01;       // confidence of a kind that is told beside the likeliest
 constexpr double kMissing = 100;            // above any error
 
 bool hasFingers(const RoleReading& reading) {
@@ -84,6 +85,11 @@ std::vector<TemplateMatch> matchesOf(const RoleReading& reading, const ReadingWe
   std::stable_sort(matches.begin(), matches.end(),
                    [](const TemplateMatch& a, const TemplateMatch& b) { return a.confidence > b.confidence; });
   return matches;
+}
+
+void dropUnlikely(std::vector<TemplateMatch>& matches) {
+  const auto isUnlikely = [](const TemplateMatch& match) { return match.confidence < kWorthNaming; };
+  matches.erase(std::remove_if(matches.begin() + 1, matches.end(), isUnlikely), matches.end());
 }
 
 std::vector<std::string> doubtsOf(const RoledSkeleton& made, const RoleReading& reading, const TemplatePins& pins) {

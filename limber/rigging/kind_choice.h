@@ -31,6 +31,9 @@ double confidenceOf(double planProbability, const RoledSkeleton& made, const Rol
 // For each plan that gets a skeleton the kind that suits the body, the likeliest first.
 std::vector<TemplateMatch> matchesOf(const RoleReading& reading, const ReadingWeights& weights);
 
+// Drops kinds that are not worth naming, but for the first.
+void dropUnlikely(std::vector<TemplateMatch>& matches);
+
 // Ends of limbs whose joints may be farthest from the truth, one of each pair, kMaxDoubts at most, first things first;
 // those that the body lacks come before all, pinned ones are left out.
 std::vector<std::string> doubtsOf(const RoledSkeleton& made, const RoleReading& reading, const TemplatePins& pins);

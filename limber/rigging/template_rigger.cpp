@@ -19,8 +19,6 @@ namespace limber {
 
 namespace {
 
-constexpr double kWorthNaming = 0.01;  // confidence of a kind that is told beside the likeliest
-
 // Each joint once, and where the model may be: the model's size beyond its box is another unit.
 void checkPins(const TriMesh& mesh, const std::vector<JointPin>& pins) {
   const Box box = modelBox(mesh);
@@ -79,12 +77,6 @@ AutoRig withHandles(const TriMesh& mesh, const RigOptions& options, const Templa
                                100 * likeliest.confidence),
                    likeliest.name);
   return rig;
-}
-
-// What is not worth naming; the one that was chosen always is.
-void dropUnlikely(std::vector<TemplateMatch>& matches) {
-  const auto isUnlikely = [](const TemplateMatch& match) { return match.confidence < kWorthNaming; };
-  matches.erase(std::remove_if(matches.begin() + 1, matches.end(), isUnlikely), matches.end());
 }
 
 // Brings the likeliest kind that has all joints that are pinned to the front; nothing where none has.

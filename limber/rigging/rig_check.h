@@ -1,0 +1,38 @@
+// Whether a model can be rigged, and what stands in the way, before any work.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "limber/rigging/auto_rigger.h"
+#include "limber/rigging/roles/part_contacts.h"
+
+namespace limber {
+
+// How a person stands.
+enum class BodyPose {
+  kT,        // arms level
+  kA,        // arms lowered
+  kHanging,  // arms at the sides
+  kOther     // legs bent or apart, arms before the body or above it
+};
+std::string_view nameOf(BodyPose pose);  // "T", "A", "hanging", "other"
+
+struct RigCheck {
+  std::vector<TemplateMatch> kinds;  // of bodies, the likeliest first; those of 1 % and more, one at least
+  bool isSure = false;               // the likeliest reaches kSureTemplate
+  std::optional<BodyPose> pose;      // of people
+  std::vector<std::string> missing;  // limbs that the kind has and the body lacks: "leftUpperArm to leftHand"
+  std::vector<PartContact> grownTogether;
+  std::vector<std::string> doubts;  // joints whose pins would settle most (AutoRig)
+  bool isUpright = true;            // the model's up is +Y
+};
+
+// One reading of the shape, and the surface between its parts.
+// Reads up, front, networks and memory of the options. Throws Error as rigWithTemplate does.
+// Cost: that of measuring the body, some 0.2 s.
+RigCheck checkRigging(const TriMesh& mesh, const RigOptions& options);
+
+}  // namespace limber
