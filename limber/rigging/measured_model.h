@@ -4,11 +4,13 @@
 #include <memory>
 #include <optional>
 
+#include "limber/core/lazy.h"
 #include "limber/reading/surface_samples.h"
 #include "limber/reading/weights_file.h"
 #include "limber/rigging/auto_rigger.h"
 #include "limber/rigging/body/anatomical_frame.h"
 #include "limber/rigging/body/body_volume.h"
+#include "limber/rigging/roles/role_reading.h"
 
 namespace limber {
 
@@ -20,6 +22,12 @@ struct MeasuredModel {
   BodyVolume body;
   SurfaceSamples samples;
   AnatomicalFrame frame;
+  Lazy<RoleReading> lazyReading;
+
+  // Without known joints; made once. Throws Error as readSamples does.
+  const RoleReading& reading() const {
+    return lazyReading.get([&] { return RoleReading(samples, *weights, frame); });
+  }
 };
 
 // Reads up, front and networks of the options (shapeWeights where they have none); asks their memory first, and leaves

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "limber/core/text/numbers.h"
+#include "limber/geometry/mesh/loose_vertices.h"
 #include "limber/rigging/kind_choice.h"
 #include "limber/rigging/measured_model.h"
 
@@ -63,8 +64,10 @@ std::string_view nameOf(BodyPose pose) {
 }
 
 RigCheck checkRigging(const TriMesh& mesh, const RigOptions& options) {
-  const std::shared_ptr<const MeasuredModel> measured = measureModel(mesh, options);
-  const RoleReading reading(measured->samples, *measured->weights, measured->frame);
+  const std::optional<BareSurface> bare = withoutLooseVertices(mesh);  // as riggers are given it
+  const TriMesh& surface = bare ? bare->mesh : mesh;
+  const std::shared_ptr<const MeasuredModel> measured = measureModel(surface, options);
+  const RoleReading& reading = measured->reading();
   RigCheck check;
   check.kinds = matchesOf(reading, *measured->weights);
   dropUnlikely(check.kinds);
@@ -75,7 +78,7 @@ RigCheck checkRigging(const TriMesh& mesh, const RigOptions& options) {
   const RoledSkeleton made = skeletonNamed(likeliest.name, reading);
   if (planOfKind(likeliest.name) == "upright") check.pose = poseOf(reading);
   check.missing = missingOf(made, reading);
-  check.grownTogether = grownTogether(measured->cleared ? *measured->cleared : mesh, reading);
+  check.grownTogether = grownTogether(measured->cleared ? *measured->cleared : surface, reading);
   check.doubts = doubtsOf(made, reading, TemplatePins(made.skeleton.joints.size()));
   return check;
 }

@@ -30,9 +30,9 @@ struct RigCheck {
   bool isUpright = true;            // the model's up is +Y
 };
 
-// One reading of the shape, and the surface between its parts.
-// Reads up, front, networks and memory of the options. Throws Error as rigWithTemplate does.
-// Cost: that of measuring the body, some 0.2 s.
+// One reading of the shape, and the surface between its parts. Vertices that no triangle uses are left out.
+// Reads up, front and networks of the options. What it measures stays in their memory, for rigWithTemplate.
+// Throws Error as rigWithTemplate does. Cost: that of measuring the body, some 0.2 s.
 RigCheck checkRigging(const TriMesh& mesh, const RigOptions& options);
 
 }  // namespace limber

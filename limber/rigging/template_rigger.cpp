@@ -112,7 +112,7 @@ TemplateFit fitTemplate(std::string_view name, const TriMesh& mesh, const Readin
   RigOptions options;
   options.reading = std::make_shared<const ReadingWeights>(weights);
   const std::shared_ptr<const MeasuredModel> measured = measureModel(mesh, options);
-  RoleReading reading(measured->samples, weights, measured->frame);
+  RoleReading reading = measured->reading();
   if (measured->frame.symmetric()) reading.makeSymmetric();
   RoledSkeleton made = skeletonNamed(name, reading);
   std::vector<Vec3> positions = placedJoints(made, reading, TemplatePins(made.skeleton.joints.size()));
@@ -127,7 +127,7 @@ AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress
   const ReadingWeights& weights = *measured->weights;
   const AnatomicalFrame& frame = measured->frame;
   progress.step("read shape");
-  RoleReading reading(measured->samples, weights, frame);
+  RoleReading reading = measured->reading();
   std::vector<TemplateMatch> matches;
   std::string kind = options.templateName;
   if (kind == "auto" && !options.templateSkeleton) {
