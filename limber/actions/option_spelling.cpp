@@ -85,6 +85,14 @@ bool isOption(std::string_view text) {
   return text.size() > 2 && text.front() == '`' && text.back() == '`' && parseOption(text.substr(1, text.size() - 2));
 }
 
+Warnings spellOptions(const Warnings& advice, OptionSpelling spelling) {
+  Warnings written;
+  for (const Warning& one : advice.items()) {
+    written.add(one.kind, spellOptions(one.message, spelling), one.where, one.count);
+  }
+  return written;
+}
+
 Error spellOptions(const Error& error, OptionSpelling spelling) {
   return Error(error.code(), error.message(),
                isOption(error.where()) ? spellOptions(error.where(), spelling) : error.where(),

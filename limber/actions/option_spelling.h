@@ -1,6 +1,6 @@
 // Options by the names that a caller knows. The library writes an option between backticks, alone or with a value:
 // "`existing-rig: replace` takes it out first". It does so in an error's remedy, and in its where() if one option is to
-// blame; messages, and names of files and joints, are left as they are.
+// blame, and in advice (RigCheckReport); other messages, and names of files and joints, are left as they are.
 #pragma once
 
 #include <string>
@@ -22,6 +22,9 @@ std::string spellOptions(std::string_view text, OptionSpelling spelling);
 
 // "`handles`", and nothing else.
 bool isOption(std::string_view text);
+
+// The advice with its messages as the caller writes them.
+Warnings spellOptions(const Warnings& advice, OptionSpelling spelling);
 
 // The error with its remedy, and a where() that is an option, as the caller writes them.
 Error spellOptions(const Error& error, OptionSpelling spelling);

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "limber/actions/rig/rig_check_report.h"
 #include "limber/actions/rig/rig_from_animation.h"
 #include "limber/document/gltf/json_text.h"
 
@@ -57,6 +58,30 @@ Json toJson(const AnimationRigReport& report) {
   json["error_percent"] = 100 * report.error;
   json["seconds"] = totalSeconds(report.stages);
   json["stages"] = stagesJson(report.stages);
+  json["warnings"] = toJson(report.warnings);
+  return json;
+}
+
+Json toJson(const RigCheckReport& report) {
+  const RigCheck& check = report.check;
+  Json json;
+  json["kinds"] = Json::array();
+  for (const TemplateMatch& kind : check.kinds) {
+    json["kinds"].push_back({{"name", kind.name}, {"confidence", kind.confidence}});
+  }
+  json["sure"] = check.isSure;
+  json["pose"] = check.pose ? Json(nameOf(*check.pose)) : Json();
+  json["missing"] = check.missing;
+  json["grown_together"] = Json::array();
+  for (const PartContact& contact : check.grownTogether) {
+    json["grown_together"].push_back({{"parts", describeParts(check, contact)}, {"length", contact.length}});
+  }
+  json["doubts"] = check.doubts;
+  json["upright"] = check.isUpright;
+  json["pieces"] = report.pieces;
+  json["inner_shell_vertices"] = report.innerShellVertices;
+  json["has_rig"] = report.hasRig;
+  json["advice"] = toJson(report.advice);
   json["warnings"] = toJson(report.warnings);
   return json;
 }

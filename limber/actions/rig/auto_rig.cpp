@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
+#include <memory>
 #include <set>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "limber/actions/rig/accessories.h"
-#include "limber/actions/rig/figure_geometry.h"
 #include "limber/actions/rig/figure_to_rig.h"
 #include "limber/actions/rig/hanging_chains.h"
 #include "limber/actions/rig/left_out_weights.h"
@@ -20,6 +20,7 @@
 #include "limber/core/known_error.h"
 #include "limber/document/rig/rig_io.h"
 #include "limber/document/scene/geometry.h"
+#include "limber/rigging/rig_check.h"
 
 namespace limber {
 
@@ -142,11 +143,6 @@ WeightResult boundToOneJoint(const TriMesh& mesh) {
   return result;
 }
 
-RigOptions optionsIn(const WorkingFrame& frame, RigOptions options) {
-  for (JointPin& pin : options.pins) pin.position = frame.toWorking(pin.position);
-  return options;
-}
-
 struct Rigged {
   SkinWeights weights;           // for the source vertices
   std::optional<Skeleton> made;  // in world space; none where the asset's own was kept
@@ -168,18 +164,17 @@ Rigged makeRig(const Asset& asset, const FigureToRig& input, const AutoRigOption
     report.joints = character.binding().skeleton.jointCount();
   } else {
     const RiggerMethod& rigger = findRigger(options.rigger);
-    if (rigger.looksForLimbs) accessories = findAccessories(asset, geometry);
-    std::optional<PreparedMesh> body;
-    if (!accessories.empty()) body = figureOf(geometry, bodyTriangles(geometry, accessories)).prepared;
-    WorkingFrame frame = body ? body->frame : prepared.frame;
-    RigOptions rigOptions = optionsIn(frame, options.rig);
-    if (body && rigOptions.memory) {
-      std::shared_ptr<RigMemory>& bare = options.rig.memory->bare;
-      if (!bare) bare = std::make_shared<RigMemory>();
-      rigOptions.memory = bare;
+    RiggerInput given = riggerInput(asset, input, options.rig, rigger.looksForLimbs);
+    const PreparedMesh& surface = given.surfaceOf(input);
+    WorkingFrame frame = surface.frame;
+    accessories = std::move(given.accessories);
+    if (options.onCheck && rigger.looksForLimbs) {
+      progress.step("check");
+      if (!given.options.memory) given.options.memory = std::make_shared<RigMemory>();
+      options.onCheck(checkRigging(surface.mesh, given.options));
     }
-    AutoRig rig = rigger.rig(body ? body->mesh : prepared.mesh, rigOptions, progress);
-    if (body && rig.isAbstained) {  // handles are for all of the model
+    AutoRig rig = rigger.rig(surface.mesh, given.options, progress);
+    if (given.bare && rig.isAbstained) {  // handles are for all of the model
       accessories = {};
       frame = prepared.frame;
       AutoRig handles = findRigger(AutoRigOptions().rigger).rig(prepared.mesh, options.rig, progress);

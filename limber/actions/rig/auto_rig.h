@@ -1,6 +1,7 @@
 // From an Asset to a rigged Asset: every stage in order. The command line, the studio and WebAssembly all call this.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +12,8 @@
 #include "limber/rigging/weights/weight_method.h"
 
 namespace limber {
+
+struct RigCheck;
 
 // What to do with a model that has a rig of its own.
 enum class ExistingRig {
@@ -27,6 +30,9 @@ struct AutoRigOptions {
   ExistingRig existingRig = ExistingRig::kRefuse;
   bool chains = false;  // appendages get joints of their own that swing (HangingChain), where a rigger finds bodies
   bool standUpright = false;  // rotate a model whose up axis is not +Y; else there is a warning
+  // Called with the check of the body (checkRigging) before a rigger that looks for limbs begins, which reads the body
+  // no second time.
+  std::function<void(const RigCheck&)> onCheck = {};
 };
 
 // A node whose mesh has vertices that no bone reaches.

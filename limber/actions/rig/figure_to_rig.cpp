@@ -1,6 +1,7 @@
 #include "limber/actions/rig/figure_to_rig.h"
 
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 #include "limber/actions/rig/figure_geometry.h"
@@ -44,6 +45,23 @@ FigureToRig readFigureToRig(Asset& asset, const AutoRigOptions& options, AutoRig
   report.triangles = prepared.mesh.triangleCount();
   report.pieces = countSolid(prepared.mesh, result.pieceOf, pieces);
   report.warnings.append(prepared.warnings);
+  return result;
+}
+
+RiggerInput riggerInput(const Asset& asset, const FigureToRig& input, const RigOptions& options, bool looksForLimbs) {
+  RiggerInput result{{}, {}, options};
+  const Geometry& geometry = input.geometry();
+  if (looksForLimbs) result.accessories = findAccessories(asset, geometry);
+  if (!result.accessories.empty()) {
+    result.bare = figureOf(geometry, bodyTriangles(geometry, result.accessories)).prepared;
+    if (options.memory) {
+      std::shared_ptr<RigMemory>& bare = options.memory->bare;
+      if (!bare) bare = std::make_shared<RigMemory>();
+      result.options.memory = bare;
+    }
+  }
+  const WorkingFrame& frame = result.surfaceOf(input).frame;
+  for (JointPin& pin : result.options.pins) pin.position = frame.toWorking(pin.position);
   return result;
 }
 

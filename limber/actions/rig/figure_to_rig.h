@@ -1,8 +1,10 @@
 // What a rig is made for, whoever makes it: limber's own riggers or programs of the user's.
 #pragma once
 
+#include <optional>
 #include <vector>
 
+#include "limber/actions/rig/accessories.h"
 #include "limber/actions/rig/auto_rig.h"
 #include "limber/character/character.h"
 #include "limber/geometry/surface/figure_surface.h"
@@ -21,6 +23,18 @@ struct FigureToRig {
 // with ExistingRig::kReplace its rig goes; on an Error it is half changed. The report gets what is asked for, what was
 // there, and the warnings of welding.
 FigureToRig readFigureToRig(Asset& asset, const AutoRigOptions& options, AutoRigReport& report, Progress& progress);
+
+// What a rigger is given of a figure.
+struct RiggerInput {
+  Accessories accessories;           // that are left out
+  std::optional<PreparedMesh> bare;  // the figure without them; none where there are none
+  RigOptions options;                // in the space of the surface, with the memory that is for it
+
+  const PreparedMesh& surfaceOf(const FigureToRig& input) const { return bare ? *bare : input.figure.prepared; }
+};
+
+// looksForLimbs  of the rigger (RiggerMethod)
+RiggerInput riggerInput(const Asset& asset, const FigureToRig& input, const RigOptions& options, bool looksForLimbs);
 
 // Ends the last stage: the times of all, and the asset's warnings before those of the stages.
 void completeReport(const Asset& rigged, AutoRigReport& report, Progress& progress);
