@@ -74,9 +74,10 @@ RigCheck checkRigging(const TriMesh& mesh, const RigOptions& options) {
   const TemplateMatch& likeliest = check.kinds.front();
   check.isSure = likeliest.confidence >= kSureTemplate;
   check.isUpright = measured->frame.axes(1, 1) > std::cos(kPi / 4);
-  if (likeliest.confidence < kLikelyTemplate) return check;
+  const std::string_view plan = planOfKind(likeliest.name);
+  if (reading.probability(plan) < kLikelyTemplate) return check;  // what a thing lacks says nothing
   const RoledSkeleton made = skeletonNamed(likeliest.name, reading);
-  if (planOfKind(likeliest.name) == "upright") check.pose = poseOf(reading);
+  if (plan == "upright") check.pose = poseOf(reading);
   check.missing = missingOf(made, reading);
   check.grownTogether = grownTogether(measured->cleared ? *measured->cleared : surface, reading);
   check.doubts = doubtsOf(made, reading, TemplatePins(made.skeleton.joints.size()));

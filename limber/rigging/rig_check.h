@@ -20,6 +20,7 @@ enum class BodyPose {
 };
 std::string_view nameOf(BodyPose pose);  // "T", "A", "hanging", "other"
 
+// What is said of pose and limbs is of the likeliest kind; nothing where the networks take the model for no such body.
 struct RigCheck {
   std::vector<TemplateMatch> kinds;  // of bodies, the likeliest first; those of 1 % and more, one at least
   bool isSure = false;               // the likeliest reaches kSureTemplate

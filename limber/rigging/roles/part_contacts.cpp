@@ -28,15 +28,14 @@ std::vector<std::vector<Index>> neighboursOf(const TriMesh& mesh) {
 }
 
 // The sample that is nearest to each vertex along edges; none on components without a sample.
-std::vector<std::optional<std::size_t>> nearestSamples(const TriMesh& mesh, const std::vector<SurfaceSample>& samples,
-                                                       const Mat3& toMesh) {
+std::vector<std::optional<std::size_t>> nearestSamples(const TriMesh& mesh, std::span<const SurfaceSample> samples) {
   const std::vector<std::vector<Index>> neighbours = neighboursOf(mesh);
   std::vector<double> distances(mesh.vertexCount(), std::numeric_limits<double>::infinity());
   std::vector<std::optional<std::size_t>> nearest(mesh.vertexCount());
   std::vector<Index> sources;
   for (std::size_t s = 0; s < samples.size(); ++s) {
     for (const Index v : mesh.triangles[samples[s].triangle]) {
-      const double distance = (mesh.position(v) - toMesh * samples[s].position).norm();
+      const double distance = (mesh.position(v) - samples[s].position).norm();
       if (!(distance < distances[v])) continue;
       distances[v] = distance;
       nearest[v] = s;
@@ -88,22 +87,21 @@ bool areNeighbours(std::string_view onePart, std::string_view otherPart) {
 
 }  // namespace
 
-std::vector<PartContact> grownTogether(const TriMesh& mesh, const RoleReading& reading) {
-  const AnatomicalFrame& frame = reading.frame();
-  const std::vector<std::optional<std::size_t>> nearest =
-      nearestSamples(mesh, reading.samples().samples, frame.axes.transpose());
+std::vector<PartContact> grownTogether(const TriMesh& mesh, std::span<const SurfaceSample> samples,
+                                       std::span<const std::string_view> partOf, double height) {
+  const std::vector<std::optional<std::size_t>> nearest = nearestSamples(mesh, samples);
   std::map<std::pair<std::string, std::string>, double> lengths;
   for (const Triangle& t : mesh.triangles) {
     if (!nearest[t[0]] || !nearest[t[1]] || !nearest[t[2]]) continue;
     std::array<std::string_view, 3> parts;
-    for (int i = 0; i < 3; ++i) parts[i] = reading.partOf(*nearest[t[i]]);
+    for (int i = 0; i < 3; ++i) parts[i] = partOf[*nearest[t[i]]];
     // The border runs between the middles of the two edges that cross it; it is shared by both parts of one corner.
     for (int i = 0; i < 3; ++i) {
       const int next = (i + 1) % 3, last = (i + 2) % 3;
       if (parts[i] == parts[next] || parts[i] == parts[last] || parts[next] != parts[last]) continue;
       if (areNeighbours(parts[i], parts[next])) continue;
       const auto [one, other] = std::minmax({std::string(parts[i]), std::string(parts[next])});
-      lengths[{one, other}] += 0.5 * (mesh.position(t[next]) - mesh.position(t[last])).norm() / frame.height;
+      lengths[{one, other}] += 0.5 * (mesh.position(t[next]) - mesh.position(t[last])).norm() / height;
     }
   }
   std::vector<PartContact> contacts;
@@ -113,6 +111,13 @@ std::vector<PartContact> grownTogether(const TriMesh& mesh, const RoleReading& r
   std::stable_sort(contacts.begin(), contacts.end(),
                    [](const PartContact& a, const PartContact& b) { return a.length > b.length; });
   return contacts;
+}
+
+std::vector<PartContact> grownTogether(const TriMesh& mesh, const RoleReading& reading) {
+  const SurfaceSamples samples = transformed(reading.samples(), reading.frame().axes.transpose());
+  std::vector<std::string_view> parts;
+  for (std::size_t s = 0; s < samples.samples.size(); ++s) parts.push_back(reading.partOf(s));
+  return grownTogether(mesh, samples.samples, parts, reading.frame().height);
 }
 
 }  // namespace limber
