@@ -25,6 +25,18 @@ TEST(OptionSpelling, EachCallerReadsItsOwnNames) {
   expectSpelled("`pins`", "--pin", "pins", "pins");
 }
 
+TEST(OptionSpelling, OfAdviceTheMessages) {
+  Warnings advice;
+  advice.add("not-upright", "`upright` rotates it", "`up`", 3);
+  const Warnings written = spellOptions(advice, OptionSpelling::kProgram);
+  ASSERT_EQ(written.items().size(), 1u);
+  const Warning& one = written.items().front();
+  EXPECT_EQ(one.kind, "not-upright");
+  EXPECT_EQ(one.message, "--upright rotates it");
+  EXPECT_EQ(one.where, "`up`");
+  EXPECT_EQ(one.count, 3u);
+}
+
 TEST(OptionSpelling, OtherTextStays) {
   for (const char* text : {"", "nothing to say", "one ` alone", "a `File.glb` of a user's", "``", "`a: `", "`: a`",
                            "`model`.glb", "`joint: replace`", "`up: +y`"}) {

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "limber/actions/rig/rig_check_report.h"
+
 namespace limber {
 namespace {
 
@@ -27,6 +29,31 @@ TEST(ReportJson, SaysAllInOneCasing) {
   EXPECT_EQ(json.at("bridged"), Json::parse(R"([{"node": "Hair", "vertices": 30, "bridged": 20}])"));
   EXPECT_EQ(json.at("warnings"), Json::parse(R"([{"kind": "bridged-vertices", "message": "vertices of such pieces",
                                                   "where": "Hair", "count": 20}])"));
+}
+
+TEST(ReportJson, OfACheckBeforeRigging) {
+  RigCheckReport report;
+  report.check.kinds = {{"humanoid", 0.75}, {"dinosaur", 0.25}};
+  report.check.isSure = true;
+  report.check.pose = BodyPose::kHanging;
+  report.check.missing = {"rightUpperArm to rightHand"};
+  report.check.grownTogether = {{"fore_end.L", "hind_upper.L", 0.125}};
+  report.check.doubts = {"head"};
+  report.pieces = 2;
+  report.innerShellVertices = 30;
+  report.hasRig = true;
+  report.advice.add("grown-together", "parts move together", "left hand and left thigh");
+  report.warnings.add("repeated-faces", "faces left out", {}, 4);
+  EXPECT_EQ(toJson(report), Json::parse(R"({
+      "kinds": [{"name": "humanoid", "confidence": 0.75}, {"name": "dinosaur", "confidence": 0.25}],
+      "sure": true, "pose": "hanging", "missing": ["rightUpperArm to rightHand"],
+      "grown_together": [{"parts": ["left hand", "left thigh"], "length": 0.125}],
+      "doubts": ["head"], "upright": true, "pieces": 2, "inner_shell_vertices": 30, "has_rig": true,
+      "advice": [{"kind": "grown-together", "message": "parts move together", "where": "left hand and left thigh",
+                  "count": 1}],
+      "warnings": [{"kind": "repeated-faces", "message": "faces left out", "where": "", "count": 4}]})"));
+  report.check.pose.reset();
+  EXPECT_TRUE(toJson(report).at("pose").is_null());
 }
 
 TEST(ReportJson, WithoutARiggerItIsNull) {

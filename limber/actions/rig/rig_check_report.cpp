@@ -98,7 +98,6 @@ Warnings adviceOn(const RigCheckReport& report, const RigOptions& options) {
                "keep-skeleton` makes only its weights anew");
   }
   adviseOnKind(check, advice);
-  if (!isLikely(check)) return advice;
   if (!check.grownTogether.empty()) {
     advice.add("grown-together", "parts that are grown together move together, unless they are cut or modelled apart",
                describeContacts(check), check.grownTogether.size());
@@ -107,6 +106,7 @@ Warnings adviceOn(const RigCheckReport& report, const RigOptions& options) {
     advice.add("no-place", "limbs of the template have no place in the model: `pins` gives them one",
                fmt::format("{}", fmt::join(check.missing, ", ")), check.missing.size());
   }
+  if (!isLikely(check)) return advice;  // handles need no more
   adviseOnUp(check, options.up.has_value(), advice);
   if (check.pose == BodyPose::kOther) {
     advice.add("posed", "the model is in a pose: check the weights where its limbs touch");
@@ -128,15 +128,18 @@ std::array<std::string, 2> describeParts(const RigCheck& check, const PartContac
 
 std::string summaryOf(const RigCheck& check) {
   const TemplateMatch& likeliest = check.kinds.front();
-  const std::string kind = fmt::format("{}, {:.0f} % sure", likeliest.name, 100 * likeliest.confidence);
-  if (!isLikely(check)) return "like no kind of body (likeliest: " + kind + ") - it gets handles";
+  std::string kind = fmt::format("{}, {:.0f} % sure", likeliest.name, 100 * likeliest.confidence);
   std::vector<std::string> obstacles;
+  if (!isLikely(check)) {
+    kind = fmt::format("like no kind of body (likeliest: {})", kind);
+    obstacles.emplace_back("it gets handles");
+  }
   for (const PartContact& contact : check.grownTogether) {
     const auto [one, other] = describeParts(check, contact);
     obstacles.push_back(fmt::format("{} is grown onto the {}", one, other));
   }
   for (const std::string& limb : check.missing) obstacles.push_back(fmt::format("{} is missing", limb));
-  if (!check.isUpright) obstacles.emplace_back("its up axis is not +Y");
+  if (!check.isUpright && isLikely(check)) obstacles.emplace_back("its up axis is not +Y");
   return fmt::format("{}{}{}{}{}", kind, check.pose ? ", " : "", check.pose ? describePose(*check.pose) : "",
                      obstacles.empty() ? "" : " - ", fmt::join(obstacles, "; "));
 }
