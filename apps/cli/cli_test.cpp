@@ -68,6 +68,9 @@ TEST_F(Cli, WrongUsageIsOneLineAndCodeTwo) {
                                              {"preview", "a.glb", "-o", "b.png", "--time", "-1"},
                                              {"pose", "a.glb", "-o", "b.glb", "--deformer", "linear-blend"},
                                              {"info"},
+                                             {"info", "a.glb", "--up", "+z"},
+                                             {"info", "a.glb", "--rig-check", "--up", "+w"},
+                                             {"info", "--conventions", "--rig-check"},
                                              {"sample", "stool"}}) {
     expectOneLine(run(arguments), 2);
   }
@@ -87,9 +90,9 @@ TEST_F(Cli, BadNetworksAreRefusedByTheirFile) {
   makeRobot();
   put("text.lrd", "no networks");
   put("cut.lrd", "LRD1");
-  for (const auto& [file, message] : {std::pair("missing.lrd", "cannot be opened"),
-                                      std::pair("text.lrd", "weights of a reading"),
-                                      std::pair("cut.lrd", "weights of a reading")}) {
+  for (const auto& [file, message] :
+       {std::pair("missing.lrd", "cannot be opened"), std::pair("text.lrd", "weights of a reading"),
+        std::pair("cut.lrd", "weights of a reading")}) {
     const Result refused = run({"rig", "robot.glb", "-o", "b.glb", "--template", "humanoid", "--reading", file});
     expectOneLine(refused, 1);
     EXPECT_THAT(refused.error, AllOf(StartsWith("limber: " + std::string(file)), HasSubstr(message)));
@@ -186,6 +189,40 @@ TEST_F(Cli, ARiggedModelIsRefusedWithBothWaysOut) {
     return nlohmann::json::parse(run({"info", file, "--json"}).out).at("joint_names");
   };
   EXPECT_EQ(names("kept.glb"), names("rigged.glb"));
+}
+
+TEST_F(Cli, InfoSaysWhetherAModelCanBeRigged) {
+  ASSERT_EQ(run({"sample", "biped", "-o", "person.glb", "-q"}).code, 0);
+  const Result lines = run({"info", "person.glb", "--rig-check"});
+  EXPECT_EQ(lines.code, 0) << lines.error;
+  EXPECT_THAT(lines.out, AllOf(HasSubstr("\nrig check       humanoid"), HasSubstr("arms lowered (A pose)")));
+  const auto json = nlohmann::json::parse(run({"info", "person.glb", "--rig-check", "--up", "+y", "--json"}).out);
+  EXPECT_EQ(json.at("pieces"), 1);
+  EXPECT_EQ(json.at("rig_check").at("pose"), "A");
+  EXPECT_FALSE(json.at("rig_check").at("has_rig"));
+  EXPECT_FALSE(nlohmann::json::parse(run({"info", "person.glb", "--json"}).out).contains("rig_check"));
+
+  ASSERT_EQ(run({"rig", "person.glb", "--handles", "5", "-o", "rigged.glb", "-q"}).code, 0);
+  EXPECT_THAT(run({"info", "rigged.glb", "--rig-check"}).out,
+              AllOf(HasSubstr("--replace-rig"), HasSubstr("[has-rig]")));
+}
+
+TEST_F(Cli, RigBeginsWithWhatTheModelIs) {
+  ASSERT_EQ(run({"sample", "biped", "-o", "person.glb", "-q"}).code, 0);
+  const std::vector<std::string> rig = {"rig", "person.glb", "--template", "auto"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), rig.begin(), rig.end());
+    return run(more);
+  };
+  EXPECT_THAT(with({"-o", "out.glb"}).out, StartsWith("humanoid"));
+  EXPECT_EQ(with({"-o", "out.glb", "-q"}).out, "");
+  const Result piped = with({"-o", "-"});
+  EXPECT_THAT(piped.out, StartsWith("glTF"));
+  EXPECT_THAT(piped.error, StartsWith("humanoid"));
+  const Result report = with({"-o", "out.glb", "--json", "-"});
+  EXPECT_EQ(nlohmann::json::parse(report.out).at("command"), "rig");
+  EXPECT_THAT(report.error, StartsWith("humanoid"));
+  EXPECT_THAT(run({"rig", "person.glb", "--template", "humanoid", "-o", "out.glb"}).out, StartsWith("read"));
 }
 
 // The numbers of a T-pose, on a model in A-pose.

@@ -7,6 +7,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "limber/actions/option_spelling.h"
 #include "limber/core/file/file.h"
 #include "limber/core/known_error.h"
 #include "limber/core/progress.h"
@@ -73,6 +74,17 @@ std::string joinNames(const std::vector<std::string>& names);
 
 // Throws Error kBadArgument unless the name ends in one of the extensions (".glb") or is "-".
 void checkOutput(std::string_view path, const std::vector<std::string_view>& extensions);
+
+// What `make` returns. An Error of its own that one option is to blame for is a wrong usage: CLI::ValidationError.
+template <typename Make>
+auto checkedOptions(const Make& make) {
+  try {
+    return make();
+  } catch (const Error& error) {
+    if (!isOption(error.where())) throw;
+    throw CLI::ValidationError(spellOptions(error, OptionSpelling::kProgram).what());
+  }
+}
 
 // A file written beside the result, named by `option`, must overwrite none of the others: throws
 // CLI::ValidationError where it does, by whatever path.

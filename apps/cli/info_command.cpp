@@ -1,9 +1,15 @@
-// limber info: what is in a file.
+// limber info: what is in a file, and whether it can be rigged.
+#include <optional>
+#include <utility>
+
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "command.h"
+#include "limber/actions/report_json.h"
+#include "limber/actions/rig/rig_check_report.h"
+#include "limber/actions/rig/rig_request.h"
 #include "limber/character/anatomy/names/naming_convention.h"
 #include "limber/core/counted.h"
 #include "limber/core/text/printable.h"
@@ -18,7 +24,9 @@ namespace {
 
 struct InfoArguments {
   std::string input;
-  bool json = false, joints = false, conventions = false;
+  bool json = false, joints = false, conventions = false, rigCheck = false;
+  RigRequest rig;  // what --rig-check reads of it
+  std::optional<std::string> reading;
 };
 
 Json vectorJson(const Vec3& v) {
@@ -200,6 +208,15 @@ void printRig(const AssetInfo& info, bool withPositions) {
   printField("without weights", counted(weights.withoutWeights, "vertex", "vertices"));
 }
 
+// What the model is taken for, then a line for each thing that its user can do.
+void printRigCheck(const RigCheckReport& report) {
+  printField("rig check", summaryOf(report.check));
+  for (const Warning& advice : report.advice.items()) {
+    const std::string where = advice.where.empty() ? "" : fmt::format(" ({})", advice.where);
+    printField("", fmt::format("{}{} [{}]", advice.message, where, advice.kind));
+  }
+}
+
 void print(const std::string& file, const AssetInfo& info, bool withPositions) {
   printField("file", file);
   printField("format", info.format);
@@ -218,7 +235,6 @@ void print(const std::string& file, const AssetInfo& info, bool withPositions) {
                                counted(clip.channels, "channel")));
   }
   if (!info.extensions.empty()) printField("extensions", joinNames(info.extensions));
-  printWarnings(info.warnings, false);
 }
 
 // For docs/anatomy.md.
@@ -240,15 +256,38 @@ void printConventions() {
   fmt::print("{}", toMarkdown(table));
 }
 
+// What --rig-check asks for, as `limber rig --rigger template` would be.
+AutoRigOptions rigOptionsOf(const InfoArguments& options) {
+  RigRequest request = options.rig;
+  request.rigger = "template";
+  request.reading = options.reading;
+  return checkedOptions([&] { return optionsOf(request); });
+}
+
 void run(const InfoArguments& options) {
   if (options.conventions) return printConventions();
   if (options.input.empty()) throw CLI::RequiredError("FILE");
-  const AssetInfo info = inspectAsset(readAsset(options.input));
-  if (options.json) {
-    printJson(infoJson(options.input, info));
-  } else {
-    print(options.input, info, options.joints);
+  std::optional<AutoRigOptions> rig;
+  if (options.rigCheck) rig = rigOptionsOf(options);
+  Asset asset = readAsset(options.input);
+  const AssetInfo info = inspectAsset(asset);
+  std::optional<RigCheckReport> check;
+  if (rig) {
+    check = checkRigging(std::move(asset), *rig);
+    check->advice = spellOptions(check->advice, OptionSpelling::kProgram);
   }
+  if (options.json) {
+    Json json = infoJson(options.input, info);
+    if (check) json["rig_check"] = toJson(*check);
+    return printJson(json);
+  }
+  print(options.input, info, options.joints);
+  Warnings warnings = info.warnings;
+  if (check) {
+    printRigCheck(*check);
+    warnings.append(check->warnings);
+  }
+  printWarnings(warnings, false);
 }
 
 }  // namespace
@@ -260,12 +299,27 @@ void addInfoCommand(CLI::App& program) {
   command->add_flag("--json", options->json, "print JSON");
   command->add_flag("--joints", options->joints,
                     "a line for each joint with its position in rest pose, as rig --pin takes it (--json has them)");
-  command->add_flag("--conventions", options->conventions,
-                    "print the naming conventions whose joints are known for certain, as a table in Markdown");
+  CLI::Option* check = command->add_flag(
+      "--rig-check", options->rigCheck,
+      "whether the model can be rigged: its kind of body and pose, what is missing or grown together, what to do");
+  command->add_option("--up", options->rig.up, "with --rig-check: the model's up, as +y (default: found)")
+      ->type_name("AXIS")
+      ->needs(check);
+  command->add_option("--front", options->rig.front, "with --rig-check: where the model looks, as +z (default: found)")
+      ->type_name("AXIS")
+      ->needs(check);
+  command->add_option("--reading", options->reading, "with --rig-check: networks of your own, as rig --reading")
+      ->type_name("FILE")
+      ->needs(check);
+  command
+      ->add_flag("--conventions", options->conventions,
+                 "print the naming conventions whose joints are known for certain, as a table in Markdown")
+      ->excludes(check);
   command->footer(
       "Pieces and watertightness are counted after vertices at equal positions are merged; watertight means that\n"
       "every edge has exactly two triangles.\n"
-      "\nExamples:\n  limber info dragon.glb --json\n  limber info hero.glb --joints\n  limber info walk.bvh");
+      "\nExamples:\n  limber info dragon.glb --json\n  limber info hero.glb --joints\n"
+      "  limber info person.glb --rig-check\n  limber info walk.bvh");
   command->callback([options] { run(*options); });
 }
 

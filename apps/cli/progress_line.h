@@ -20,12 +20,13 @@ class TerminalProgress {
   Progress* operator->() { return &progress_; }
   // Closes the last stage and takes the line away, so that other text can follow.
   void finish();
+  // Takes the line away; the next report draws it again.
+  void clear();
   // Draws `text` instead of the name and the percentage of the stage, until the next call; empty: these again.
   void describe(std::string text);
 
  private:
   void draw(std::string_view stage, double fraction);
-  void clear();
 
   bool enabled_;
   double startedAt_, drawnAt_ = 0;

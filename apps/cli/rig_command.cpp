@@ -10,8 +10,8 @@
 #include "animation_rig.h"
 #include "command.h"
 #include "limber/actions/export/write_model.h"
-#include "limber/actions/option_spelling.h"
 #include "limber/actions/report_json.h"
+#include "limber/actions/rig/rig_check_report.h"
 #include "limber/actions/rig/rig_request.h"
 #include "limber/adapters/rig_by_program.h"
 #include "limber/core/counted.h"
@@ -180,7 +180,6 @@ AutoRigReport rigAsRequested(Asset& asset, AutoRigOptions rig, const RigPrograms
   return report;
 }
 
-// What is wrong with one option is a wrong usage.
 void completeRequest(RigArguments& options) {
   RigRequest& request = options.request;
   if (options.replaceRig) request.existingRig = "replace";
@@ -188,12 +187,17 @@ void completeRequest(RigArguments& options) {
   request.reading = options.reading;
   for (const std::string& pin : options.pins) request.pins.push_back(parsePin(pin));
   request.target = options.target.target;
-  try {
-    options.rig = options.templateName ? optionsWithTemplate(request, *options.templateName) : optionsOf(request);
-  } catch (const Error& error) {
-    if (!isOption(error.where())) throw;
-    throw CLI::ValidationError(spellOptions(error, OptionSpelling::kProgram).what());
-  }
+  options.rig = checkedOptions(
+      [&] { return options.templateName ? optionsWithTemplate(request, *options.templateName) : optionsOf(request); });
+}
+
+// The first line of the account comes before the work: what the model is taken for, and what is in the way.
+void announceCheck(AutoRigOptions& rig, const Account& account, TerminalProgress& progress) {
+  if (rig.rig.templateName != "auto" || rig.rig.templateSkeleton) return;
+  rig.onCheck = [&](const RigCheck& check) {
+    progress.clear();
+    account.line(summaryOf(check));
+  };
 }
 
 void run(RigArguments options) {
@@ -217,7 +221,11 @@ void run(RigArguments options) {
   }
   options.adapters.refuseUnused({options.rig.rigger, options.rig.skinning}, programs.rigger || programs.weights);
 
+  // Whatever goes to standard output goes there alone.
+  const bool busy = options.output == "-" || options.report == "-";
+  const Account account(options.common.quiet, busy ? "-" : "");
   TerminalProgress progress(options.common.quiet);
+  if (!options.common.quiet) announceCheck(options.rig, account, progress);
   progress->stage("read");
   Asset asset = readAsset(options.input);
   AutoRigReport report = rigAsRequested(asset, options.rig, programs, *progress);
@@ -237,10 +245,7 @@ void run(RigArguments options) {
   report.warnings.append(writeModel(asset, options.output, write));
   progress.finish();
   report.stages = progress->stages();
-
-  // Whatever goes to standard output goes there alone.
-  const bool busy = options.output == "-" || options.report == "-";
-  printAccount(Account(options.common.quiet, busy ? "-" : ""), options, report);
+  printAccount(account, options, report);
 }
 
 // CLI11 takes an optional value that is empty for one that is not there.
