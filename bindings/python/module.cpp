@@ -18,6 +18,7 @@
 #include "limber/actions/option_spelling.h"
 #include "limber/actions/pose/pose_asset.h"
 #include "limber/actions/report_json.h"
+#include "limber/actions/rig/rig_check_report.h"
 #include "limber/actions/rig/rig_request.h"
 #include "limber/actions/rig/stand_upright.h"
 #include "limber/character/character.h"
@@ -255,6 +256,17 @@ class Model {
     progress.run([&](Progress& reported) { report = autoRig(rigged, options, reported); });
     finishRig(rigged, request, report);
     character_ = Character(std::move(rigged));
+    return pythonOf(toJson(report));
+  }
+
+  py::object checkRigging(const AutoRigOptions& options) const {
+    RigCheckReport report;
+    const Character character = character_;
+    {
+      const py::gil_scoped_release release;
+      report = limber::checkRigging(character.document().clone(), options);
+    }
+    report.advice = spellOptions(report.advice, OptionSpelling::kPython);
     return pythonOf(toJson(report));
   }
 
@@ -496,6 +508,20 @@ PYBIND11_MODULE(_limber, module) {
           py::arg("front") = py::none(), py::arg("upright") = false, py::arg("chains") = false,
           py::arg("reading") = py::none(), py::arg("target") = RigRequest().target, py::arg("progress") = py::none(),
           kRigHelp)
+      .def(
+          "check_rigging",
+          [](const Model& model, const std::optional<std::string>& up, const std::optional<std::string>& front,
+             const std::optional<std::filesystem::path>& reading) {
+            RigRequest request;
+            request.rigger = "template";
+            request.up = up;
+            request.front = front;
+            request.reading = reading;
+            return model.checkRigging(optionsFrom(request, std::nullopt));
+          },
+          py::kw_only(), py::arg("up") = py::none(), py::arg("front") = py::none(), py::arg("reading") = py::none(),
+          "Whether a template can be fitted, before any work: kind of body, pose, what is missing or grown together, "
+          "and what to do, as a dictionary (docs/report.md of the project). Options as in rig().")
       .def("attach_rig", &Model::attach, py::arg("names"), py::arg("parents"), py::arg("positions"), py::arg("joints"),
            py::arg("weights"),
            "A rig of your own: J names, (J,) parents with -1 for a root, (J, 3) places in metres; (V, K) joints and "

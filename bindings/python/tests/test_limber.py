@@ -216,6 +216,20 @@ class Rigging(InFolder):
         self.assertIn('existing_rig="replace" takes it out first', caught.exception.remedy)
         self.assertNotIn("`", str(caught.exception))
 
+    def test_a_check_before_rigging(self):
+        model = limber.sample("biped")
+        before = model.glb()
+        check = model.check_rigging()
+        self.assertTrue(check["kinds"][0]["name"].startswith("humanoid"))
+        self.assertEqual((check["pose"], check["missing"], check["upright"], check["has_rig"]), ("A", [], True, False))
+        self.assertEqual(model.glb(), before)
+        model.rig(handles=5)
+        advice = {one["kind"]: one["message"] for one in model.check_rigging()["advice"]}
+        self.assertIn('existing_rig="replace" takes it out first', advice["has-rig"])
+        with self.assertRaises(limber.Error) as caught:
+            model.check_rigging(up="+w")
+        self.assertEqual(caught.exception.where, "up")
+
     def test_same_bytes_with_every_option(self):
         subprocess.run([PROGRAM, "sample", "biped", "-o", self.path("bare.glb"), "--quiet"], check=True)
         bare = limber.read(self.path("bare.glb"))
