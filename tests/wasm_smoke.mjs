@@ -62,10 +62,13 @@ cases['a template without the networks that read shapes is an error value, until
   const { ok, error } = bare.rig(bytes, 'model.glb', options);
   assert.deepEqual([ok, error.code], [false, 'unsupported']);
   assert.match(error.remedy, /setShapeWeights/);
+  const session = bare.createSession();
+  assert.ok(session.run({ do: 'open_sample', name: 'biped' }).ok);
+  assert.match(session.rigCheck().error.remedy, /setShapeWeights/);
   const cut = bare.setShapeWeights(shapes.subarray(0, 1000), 'cut.lrd');
   assert.deepEqual([cut.ok, cut.error.code], [false, 'bad-data']);
   assert.match(cut.error.where, /^cut\.lrd/);
-  assert.ok(bare.setShapeWeights(shapes).ok && bare.rig(bytes, 'model.glb', options).ok);
+  assert.ok(bare.setShapeWeights(shapes).ok && bare.rig(bytes, 'model.glb', options).ok && session.rigCheck().ok);
   const offline = new Error('offline'), cutOff = await loadLimber(part(''), { shapeWeights: () => { throw offline; } });
   assert.throws(() => cutOff.rig(bytes, 'model.glb', options), (thrown) => thrown === offline);
   assert.ok(cutOff.rig(bytes, 'model.glb', { handles: 6 }).ok);
@@ -238,6 +241,29 @@ cases['a session: surface, picking and a saved session'] = () => {
   assert.ok(again.open(session.export('session').bytes, 'model.glb').ok);
   assert.equal(Buffer.compare(again.export('glb').bytes, session.export('glb').bytes), 0);
   again.free();
+};
+cases['a session: whether the model can be rigged, before any work'] = () => {
+  const asked = limber.createSession();
+  assert.equal(asked.rigCheck().ok, false); // nothing is open
+  const checked = (name) => {
+    assert.ok(asked.run({ do: 'open_sample', name }).ok);
+    const record = asked.record(), { ok, check, error } = asked.rigCheck();
+    assert.ok(ok, error?.message);
+    assert.deepEqual(asked.record(), record);
+    return check;
+  };
+  const kinds = ({ advice }) => advice.map(({ kind }) => kind);
+  const person = checked('biped');
+  assert.match(person.kinds[0].name, /^humanoid/);
+  assert.ok(person.kinds[0].confidence > 0.9 && person.sure && person.upright && !person.has_rig);
+  assert.deepEqual([person.pose, person.missing, person.grown_together], ['A', [], []]);
+  assert.ok(kinds(person).every((kind) => kind === 'doubtful-joints'), kinds(person).join());
+  const stool = checked('stool');
+  assert.deepEqual([stool.pose, kinds(stool)], [null, ['no-template']]);
+  assert.match(stool.advice[0].message, /template: '[\w-]+'/); // as its own calls name options
+  const flying = checked('flying');
+  assert.deepEqual([flying.has_rig, kinds(flying)[0]], [true, 'has-rig']);
+  asked.free();
 };
 cases['a scene: several models in one file, as the native program writes it'] = () => {
   const scene = limber.createSession();

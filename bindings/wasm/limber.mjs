@@ -79,6 +79,12 @@ import createEngine from './limber_engine.mjs';
  *                       sliding_centimetres_per_second: number, penetration_millimetres: number, jerk_ratio: number,
  *                       contact_agreement: number, [figure: string]: number | boolean } | null }} Measures
  *
+ * Of docs/report.md, `rig_check`; advice: what to do, what matters most first, empty where nothing is in the way.
+ * @typedef {{ kinds: { name: string, confidence: number }[], sure: boolean, pose: 'T' | 'A' | 'hanging' | 'other' | null,
+ *             missing: string[], grown_together: { parts: [string, string], length: number }[], doubts: string[], upright: boolean,
+ *             pieces: number, inner_shell_vertices: number, has_rig: boolean, advice: SessionState['warnings'],
+ *             warnings: SessionState['warnings'] }} RigCheck
+ *
  * skin: 16 numbers for each joint, a matrix column by column; state: null after a drag's update
  * or turn and a moment of a clip; pinned: joints that hold on to a place.
  * @typedef {{ ok: true, state: SessionState | null, skin: Float32Array, pinned: number[] } | Failure} StepResult
@@ -126,8 +132,9 @@ import createEngine from './limber_engine.mjs';
  *           shapeWeights?: () => Uint8Array, onInstance?: (instance: WebAssembly.Instance) => void,
  *           optionNames?: 'javascript' | 'program' }} [given]
  *   codecs may be put in later; rest: gives the other part of an engine in two (split_engine.mjs), asked once, by the first
- *   call that needs it; shapeWeights: gives shapes.lrd, asked by the first call that fits a template; optionNames: how errors name
- *   options, existingRig: 'replace' or --replace-rig; what onProgress and shapeWeights throw stops the call, and is thrown by it
+ *   call that needs it; shapeWeights: gives shapes.lrd, asked by the first call that fits a template or checks for one;
+ *   optionNames: how errors name options, existingRig: 'replace' or --replace-rig; what onProgress and shapeWeights throw stops
+ *   the call, and is thrown by it
  */
 export async function loadLimber(wasm, given = {}) {
   const { rest, onInstance, optionNames, onProgress, shapeWeights, ...settings } = given;
@@ -441,6 +448,12 @@ function createSession(engine, handle = engine._limber_session_new()) {
     /** What was done since a model was opened, as a list that `limber session replay` runs.
      *  @type {() => { limber_commands: number, commands: Command[] }} */
     record: () => call(engine, engine._limber_session_record, [handle]).account,
+    /** Whether the model can be rigged with a named skeleton, and what stands in the way; nothing changes. Asks for the networks
+     *  that read shapes, as fitting a template does. @type {() => { ok: true, check: RigCheck } | Failure} */
+    rigCheck: () => {
+      const result = call(engine, engine._limber_session_rig_check, [handle]);
+      return result.ok ? { ok: true, check: result.account } : result;
+    },
     /** Figures by which methods are compared: limber/session/drag/measures.h.
      *  @type {() => { ok: true, measures: Measures } | Failure} */
     measures: () => {

@@ -5,6 +5,8 @@
 #include <memory>
 
 #include "call_result.h"
+#include "limber/actions/report_json.h"
+#include "limber/actions/rig/rig_check_report.h"
 #include "limber/deform/direct_delta_mush.h"
 #include "limber/document/bvh/bvh_write.h"
 #include "limber/document/gltf/json_text.h"
@@ -491,6 +493,17 @@ LIMBER_EXPORT CallResult* limber_session_pose(const SessionHandle* handle, const
 LIMBER_EXPORT CallResult* limber_session_measures(const SessionHandle* handle) {
   return guarded({}, [&]() -> CallResult {
     return {true, {}, textOf(limber::measuresToJson(limber::measureSession(handle->session())))};
+  });
+}
+
+// Whether the model, without a rig of its own, can get a named skeleton. What is read of the shape serves rigging, too.
+LIMBER_EXPORT CallResult* limber_session_rig_check(const SessionHandle* handle) {
+  return guarded({}, [&]() -> CallResult {
+    limber::AutoRigOptions options;
+    options.rig.memory = handle->session().state().memory;
+    limber::RigCheckReport report = limber::checkRigging(handle->session().source().clone(), options);
+    report.advice = limber::spellOptions(report.advice, limber::wasm::optionSpelling);
+    return {true, {}, textOf(limber::toJson(report))};
   });
 }
 

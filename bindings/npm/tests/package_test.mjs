@@ -270,6 +270,8 @@ const cases = {
       assert.deepEqual(await session.run(command), here.run(command));
     }
     assert.deepEqual(await session.model(), here.model());
+    const { check } = here.rigCheck();
+    assert.deepEqual([(await session.rigCheck()).check, check.pose, check.advice[0].kind], [check, null, 'no-template']);
     assert.deepEqual((await session.export('glb')).bytes, here.export('glb').bytes);
     const fork = await session.fork();
     assert.ok((await fork.run({ do: 'set_handles', count: 4 })).ok);
@@ -324,6 +326,7 @@ const cases = {
       const rigged: RigResult = await worker.rig(new Uint8Array(), 'a.glb', { pins: { head: [0, 1, 2] }, up: '+y' }, { onProgress: (stage, fraction) => stage.at(fraction) });
       const turned = await remote.run({ do: 'set_turn', joint: 'head', turn: [0, 30, 0], relative: true });
       if (turned.ok) { const skin: Float32Array = turned.skin; } else { const remedy: string = turned.error.remedy; }
+      const checked = await remote.rigCheck(), pose: 'T' | 'A' | 'hanging' | 'other' | null = checked.ok ? checked.check.pose : null;
       const names: string[] = (await worker.rigChoices()).template.map(({ name }) => name);
       const limber = await load(), session = limber.createSession();
       session.run({ do: 'set_turn', joint: 'head', turn: [0, 30, 0], relative: true });
