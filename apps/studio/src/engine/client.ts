@@ -54,8 +54,8 @@ const changesDocument = ({ kind }: Request) => ['open', 'add', 'motion', 'transf
 /** What the next of its kind replaces. */
 const frameOf = (request: Request) =>
   (request.kind === 'run' && ['update_drag', 'turn_drag', 'move_drag', 'set_time', 'set_clock', 'choose_member'].includes(request.command.do) ? request.command.do : null);
-/** What is tried for a picture, and what comes live, holds nobody up. */
-const quiet = ({ kind }: Request) => kind.startsWith('preview') || kind.startsWith('live');
+/** What is tried for a picture, what comes live and what is asked of a model that nobody waits for holds nobody up. */
+const quiet = ({ kind }: Request) => kind.startsWith('preview') || kind.startsWith('live') || kind === 'rig-check';
 const opens = (request: Request) => request.kind === 'open' || (request.kind === 'run' && opensModel(request.command));
 
 export class EngineClient {

@@ -236,6 +236,7 @@ export class Documents {
   surface(rays: Ray[]) { return rays.map((ray) => orThrow(this.session.surface(ray)).hit); }
   preview(stroke: Command | null) { return orThrow(stroke ? this.session.preview(stroke) : this.session.weights()).weights; }
   parts() { return orThrow(this.session.parts()).parts; }
+  rigCheck(): Answers['rig-check'] { return orThrow(this.session.rigCheck()).check; }
   crowd(bytes: Uint8Array, name: string): Answers['crowd'] { return orThrow(this.limber.crowd(bytes, name)).crowd; }
   checkPly(bytes: Uint8Array, name: string) { orThrow(this.limber.checkPly(bytes, name)); }
   methods() { return this.limber.methods(); }

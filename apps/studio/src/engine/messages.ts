@@ -1,12 +1,12 @@
 // What the page and the worker that holds the engine say to each other.
 import type {
-  Command, Crowd, Deformation, ErrorKind, ExportFormat, LimberError, Measures, MethodKind, Methods, PickHit, Placement, Ray, SceneMember, SessionState,
-  SurfaceHit, SurfaceModel, SurfaceParts, Tangent, WeightArrays,
+  Command, Crowd, Deformation, ErrorKind, ExportFormat, LimberError, Measures, MethodKind, Methods, PickHit, Placement, Ray, RigCheck, SceneMember,
+  SessionState, SurfaceHit, SurfaceModel, SurfaceParts, Tangent, WeightArrays,
 } from '@engine/limber.mjs';
 
 export type {
-  Command, Crowd, Deformation, ErrorKind, ExportFormat, LimberError, Measures, MethodKind, Methods, PickHit, Placement, Ray, SceneMember, SessionState,
-  SurfaceHit, SurfaceModel, SurfaceParts, Tangent, WeightArrays,
+  Command, Crowd, Deformation, ErrorKind, ExportFormat, LimberError, Measures, MethodKind, Methods, PickHit, Placement, Ray, RigCheck, SceneMember,
+  SessionState, SurfaceHit, SurfaceModel, SurfaceParts, Tangent, WeightArrays,
 };
 export type Vector = [number, number, number];
 
@@ -175,6 +175,8 @@ export type Request =
   | { kind: 'preview'; stroke: Command | null }
   /** The limbs as the weights have them. */
   | { kind: 'parts' }
+  /** Whether the model can be rigged with a named skeleton. */
+  | { kind: 'rig-check' }
   /** The model that the chosen clip's motion came with. */
   | { kind: 'source-model' }
   | { kind: 'paths' }
@@ -220,6 +222,7 @@ export interface Answers {
   surface: (SurfaceHit | null)[];
   preview: WeightArrays;
   parts: SurfaceParts;
+  'rig-check': RigCheck;
   'source-model': { motion: string; model: SurfaceModel; joints: number } | null;
   paths: Paths;
   curve: Curve;

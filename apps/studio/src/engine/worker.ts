@@ -28,6 +28,7 @@ function answer(documents: Documents, request: Request): Answers[Kind] {
     case 'surface': return documents.surface(request.rays);
     case 'preview': return documents.preview(request.stroke);
     case 'parts': return documents.parts();
+    case 'rig-check': return documents.rigCheck();
     case 'try-motion': return documents.tryMotion(request.motion);
     case 'sample-motions': return documents.sampleMotions();
     case 'preview-motion': return documents.previewMotion(request.motion, request.most, request.rate);
@@ -69,6 +70,11 @@ function unpacking(): TransformStream<Uint8Array, Uint8Array> {
   });
 }
 
+function unpacked(file: ArrayBuffer): Uint8Array<ArrayBuffer> {
+  const bytes = new Uint8Array(file);
+  return isPacked(bytes) ? decompress(bytes) as Uint8Array<ArrayBuffer> : bytes;
+}
+
 /** A part of the engine did not come: what the host answered, null where nobody did. */
 class Missing extends Error {
   constructor(readonly status: number | null) { super(); }
@@ -93,8 +99,7 @@ function fetchNow(url: string): Uint8Array<ArrayBuffer> {
     throw new Missing(null);
   }
   if (request.status !== 200) throw new Missing(request.status);
-  const bytes = new Uint8Array(request.response as ArrayBuffer);
-  return isPacked(bytes) ? decompress(bytes) as Uint8Array<ArrayBuffer> : bytes;
+  return unpacked(request.response as ArrayBuffer);
 }
 
 /** What the first pose needs nothing of: it comes when the first request has been answered, or at once where one needs it. */
@@ -113,6 +118,26 @@ class RestOfEngine {
   }
 }
 
+/** The networks that read shapes: they come when a call needs them, or beside other work where it can wait for them. */
+class Shapes {
+  private bytes: Uint8Array | null = null;
+  private given = false;
+
+  async fetch(): Promise<void> {
+    if (this.bytes || this.given) return;
+    const response = await fetch(shapesUrl).catch(() => null), file = response?.ok ? await response.arrayBuffer().catch(() => null) : null;
+    if (!file) throw new Missing(response?.ok ? null : response?.status ?? null);
+    this.bytes = unpacked(file);
+  }
+
+  needed(): Uint8Array {
+    const bytes = this.bytes ?? fetchNow(shapesUrl);
+    [this.bytes, this.given] = [null, true];
+    return bytes;
+  }
+}
+const shapes = new Shapes();
+
 /** The files that a request brings. */
 function filesIn(request: Request): Uint8Array[] {
   switch (request.kind) {
@@ -126,7 +151,7 @@ function filesIn(request: Request): Uint8Array[] {
 async function start() {
   const codecs: Codecs = {}, rest = new RestOfEngine();
   const limber = await loadLimber(await enginePart(firstUrl), {
-    codecs, rest: () => rest.needed(), shapeWeights: () => fetchNow(shapesUrl), onProgress: (stage, fraction) => say({ kind: 'progress', stage, fraction }),
+    codecs, rest: () => rest.needed(), shapeWeights: () => shapes.needed(), onProgress: (stage, fraction) => say({ kind: 'progress', stage, fraction }),
   });
   const documents = new Documents(limber);
   say({ kind: 'ready' });
@@ -149,6 +174,12 @@ const started = start();
 // One after the other, also where the engine or a decoder is on its way.
 let before: Promise<unknown> = started.catch((error: unknown) =>
   say({ kind: 'broken', ...error instanceof Missing ? { missing: true, status: error.status } : { missing: false, why: String(error) } }));
+const enqueue = (message: ToWorker) => {
+  before = before.then(async () => (await started)(message)).catch(() => { /* there is no engine, which was told */ });
+};
 onmessage = ({ data }: MessageEvent<ToWorker>) => {
-  before = before.then(async () => (await started)(data)).catch(() => { /* there is no engine, which was told */ });
+  if (data.request.kind !== 'rig-check') return enqueue(data);
+  // Whatever is asked meanwhile goes first.
+  shapes.fetch().then(() => enqueue(data), (error: unknown) =>
+    say({ kind: 'cut-short', id: data.id, status: error instanceof Missing ? error.status : null }));
 };

@@ -7,6 +7,7 @@ import { button, element, fileInput } from '../ui/dom';
 import { methodName, methodSummary } from '../words/engine';
 import { partName } from '../words/parts';
 import { say } from '../words/say';
+import { rigCheck } from './rig_check';
 
 const rigFiles = '.glb,.gltf,.vrm,.fbx,.npz';
 
@@ -50,7 +51,7 @@ export function methodsPanel(studio: Studio, page: PageStore): HTMLElement {
     return element('div', { class: 'field' }, element('label', { for: kind }, text), select, compareButton(studio, page, kind));
   };
   return element('details', { class: 'card methods', id: 'methods' }, element('summary', {}, say('How it is done')),
-    row('rigger', say('Joints')), correction(studio, page), otherRigs(studio, page), row('skinning', say('Skin')),
+    row('rigger', say('Joints')), rigCheck(studio, page), correction(studio, page), otherRigs(studio, page), row('skinning', say('Skin')),
     row('deformer', say('Bending')), row('solver', say('Limbs')), report(studio, page));
 }
 

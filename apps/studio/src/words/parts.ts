@@ -3,8 +3,9 @@
 import { say, type Words } from './say';
 
 const parts: readonly Words[] = [
-  'trunk', 'hips', 'spine', 'neck', 'head', 'tail', 'leg', 'hip', 'upper leg', 'lower leg', 'hock', 'foot', 'toes', 'arm', 'shoulder', 'upper arm',
-  'lower arm', 'arm hock', 'hand', 'arm toes', 'wing', 'fin', 'finger', 'ear', 'jaw', 'eye', 'hair', 'prop', 'other',
+  'trunk', 'hips', 'spine', 'chest', 'upper chest', 'neck', 'head', 'tail', 'leg', 'hip', 'upper leg', 'thigh', 'lower leg', 'shin', 'hock', 'foot', 'toes',
+  'arm', 'shoulder', 'upper arm', 'lower arm', 'forearm', 'arm hock', 'hand', 'arm toes', 'wing', 'fin', 'finger', 'ear', 'jaw', 'eye', 'hair', 'prop', 'other',
+  'upper front leg', 'lower front leg', 'upper hind leg', 'lower hind leg',
   'thumb metacarpal', 'thumb proximal', 'thumb distal', 'index proximal', 'index intermediate', 'index distal',
   'middle proximal', 'middle intermediate', 'middle distal', 'ring proximal', 'ring intermediate', 'ring distal',
   'little proximal', 'little intermediate', 'little distal',

@@ -1,5 +1,5 @@
 // How the rig is made: handles, methods, limits, and joints of a named skeleton put right.
-import type { Vector } from '../../engine/messages';
+import type { RigCheck, Vector } from '../../engine/messages';
 import { counted } from '../../ui/counted';
 import { say } from '../../words/say';
 import type { Core } from './core';
@@ -109,6 +109,11 @@ export function rigCalls(core: Core, told: (title: string) => void) {
         core.take(await engine.run({ do: 'set_limits', limits: await file.text() }));
         page.set({ limits: true, display: 'handles' });
       });
+    },
+
+    /** Whether a named skeleton suits the model; null where that cannot be found out now, which is told nowhere else. */
+    async checkRig(): Promise<RigCheck | null> {
+      return core.counted(() => engine.ask({ kind: 'rig-check' }).catch(() => null));
     },
 
     /** Joints are corrected on the model as it is bound, so it stands at rest. */
