@@ -8,7 +8,7 @@ import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { existsSync, mkdirSync, readFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
-import { chooseMotion, download, dragMouse, jointPlace, jointPosition, lastJointOf, launch, motionPlayed, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
+import { barriers, chooseMotion, download, dragMouse, jointPlace, jointPosition, lastJointOf, launch, motionPlayed, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
 import { walkBvh } from './walk_bvh.mjs';
 
 const [dist, program, output] = process.argv.slice(2).map((path) => resolve(path));
@@ -154,6 +154,37 @@ const cases = {
     await settled(at);
     await at.locator('#rigger').selectOption('template');
     await at.waitForFunction(() => globalThis.limberStudio.state()?.rigger === 'template');
+    assert.equal(asked, 2);
+    await visit.context.close();
+  },
+  async 'whether a model can be rigged is said before any work: what it is, its pose, what stands in the way'() {
+    let asked = 0;
+    const prepare = (context) => context.route(/shapes-.*\.lrd/, (route) => (++asked === 1 ? route.abort('internetdisconnected') : route.continue()));
+    const visit = await openStudio(browser, server.address, { ...size, search: '?sample=biped', prepare }), at = visit.page;
+    const check = async () => {
+      await at.locator('#check-rig').click();
+      await settled(at);
+      return at.locator('#rig-check').innerText();
+    };
+    const given = () => at.locator('#give-skeleton').isVisible();
+    await at.locator('#methods summary').click();
+    const before = await sessionState(at);
+    assert.match(await check(), /could not be found out now/);
+    assert.deepEqual([await at.locator('#notice').isVisible(), await given()], [false, false]);
+    assert.match(await check(), /^Person.*, \d+ % sure\s+A pose\s+(Nothing stands in the way\.|In doubt: .*)$/);
+    assert.deepEqual([await sessionState(at), await given()], [before, true]);
+    assert.deepEqual(await barriers(at), []);
+    await at.screenshot({ path: join(output, 'second_minute_rig_check.png') });
+    await openSample(at, 'stool');
+    assert.equal(await at.locator('#rig-check').innerText(), '');
+    assert.match(await check(), /^It is like no body that is known \(likeliest: .*, \d+ % sure\)\s+Handles suit it better/);
+    assert.equal(await given(), false);
+    await openSample(at, 'biped');
+    await check();
+    await at.locator('#give-skeleton').click();
+    await at.waitForFunction(() => globalThis.limberStudio.state()?.rigger === 'template');
+    await settled(at);
+    assert.equal(await at.locator('#check-rig').isVisible(), false);
     assert.equal(asked, 2);
     await visit.context.close();
   },

@@ -117,6 +117,8 @@ async function walk(locale) {
   await note('painting');
   await click('#paint');
   await click('#methods summary');
+  await click('#check-rig');
+  await note('whether it can be rigged');
   await click('#compare-solver');
   await note('comparison');
   await click('#end-comparison');
@@ -206,7 +208,11 @@ const cases = {
     const kinds = [...part('const warnings', 'type Warning').matchAll(/'([a-z-]+)':/g)].map(([, kind]) => kind);
     const methods = [...part('const methods', 'export const methodName').matchAll(/'([a-z-]+)': \{/g)].map(([, name]) => name);
     assert.ok(kinds.length > 10 && methods.length > 10);
-    assert.deepEqual([...kinds, ...methods].filter((text) => !engine.includes(`"${text}"`)), []);
+    const check = readFileSync(join(sources, 'words/rig_check.ts'), 'utf8');
+    const advice = [...check.slice(check.indexOf('const advice')).matchAll(/^ {2}'([a-z-]+)': \(/gm)].map(([, kind]) => kind);
+    const bodies = [...check.slice(0, check.indexOf('const poses')).matchAll(/'([a-z-]+)': '/g)].map(([, name]) => name);
+    assert.ok(advice.length > 5 && bodies.length > 5);
+    assert.deepEqual([...kinds, ...methods, ...advice, ...bodies].filter((text) => !engine.includes(`"${text}"`)), []);
   },
   async 'a language and a size of the text that are chosen are kept'() {
     const { page: at, context } = await open();
