@@ -13,10 +13,10 @@
 namespace limber {
 namespace {
 
-using testing::capsulePerson;
+using testing::riggedCapsulePerson;
 
 Skeleton mappedSkeleton(const std::function<Vec3(const Vec3&)>& map) {
-  const Skeleton person = capsulePerson().skeleton;
+  const Skeleton person = riggedCapsulePerson().skeleton;
   std::vector<Vec3> positions;
   for (const Vec3& position : testing::jointPositions(person)) positions.push_back(map(position));
   Skeleton result = person;
@@ -47,7 +47,7 @@ Skeleton chain() {
 }
 
 TEST(JointLandmarks, JointsInCommonAreWhereTheOtherBodyHasThem) {
-  const Skeleton source = capsulePerson().skeleton;
+  const Skeleton source = riggedCapsulePerson().skeleton;
   Skeleton target = mappedSkeleton([](const Vec3& p) { return Vec3(1.2 * p.x(), 1.5 * p.y(), p.z() + 3); });
   for (Joint& joint : target.joints) joint.name += "_other";
   const std::vector<JointLandmark> landmarks = commonLandmarks(source, target);
@@ -64,7 +64,7 @@ TEST(JointLandmarks, JointsInCommonAreWhereTheOtherBodyHasThem) {
 }
 
 TEST(JointLandmarks, OfUnlikeBodiesAreRefusedInTheWordsOfARig) {
-  const Skeleton person = capsulePerson().skeleton;
+  const Skeleton person = riggedCapsulePerson().skeleton;
   for (const bool isSource : {true, false}) {
     try {
       isSource ? commonLandmarks(chain(), person) : commonLandmarks(person, chain());
@@ -81,7 +81,7 @@ TEST(JointLandmarks, OfUnlikeBodiesAreRefusedInTheWordsOfARig) {
 
 // The template lies in both bodies, a little off in each; what is between source and template stays between them.
 TEST(JointLandmarks, ByATemplateKeepTheirPlaceAgainstIt) {
-  const Skeleton source = capsulePerson().skeleton;
+  const Skeleton source = riggedCapsulePerson().skeleton;
   const auto off = [](const Vec3& p) { return Vec3(p + Vec3(0, 0, 0.02)); };
   const auto turned = [&](const Vec3& p) { return Vec3(2 * Vec3(p.z(), p.y(), -p.x()) + Vec3(1, 0, 0)); };
   const Skeleton inSource = mappedSkeleton(off);
@@ -96,7 +96,7 @@ TEST(JointLandmarks, ByATemplateKeepTheirPlaceAgainstIt) {
 }
 
 TEST(JointLandmarks, ATemplateThatIsFarOffIsNotBelievedOfTheSource) {
-  const Skeleton source = capsulePerson().skeleton;
+  const Skeleton source = riggedCapsulePerson().skeleton;
   Skeleton inSource = source;
   const Index hand = source.find("leftHand").value();
   inSource.joints[hand].rest.translation += Vec3(0, 0, 0.5);  // of 1.8: far more than templates err
@@ -116,7 +116,7 @@ Asset bareScene(const TriMesh& mesh) {
 }
 
 TEST(JointLandmarks, AFitCanBeCancelledAndTellsItsSteps) {
-  const Asset person = bareScene(capsulePerson().mesh);
+  const Asset person = bareScene(riggedCapsulePerson().mesh);
   std::vector<std::string> reported;
   Progress progress([&](std::string_view stage, double) {
     reported.emplace_back(stage);
@@ -145,7 +145,7 @@ TEST(JointLandmarks, WhatHasNoLimbsHasNoTemplate) {
 Skeleton onTheGround() {
   Skeleton result;
   result.joints.push_back({"root", std::nullopt, {}, 0});
-  for (Joint joint : testing::capsulePerson().skeleton.joints) {
+  for (Joint joint : testing::riggedCapsulePerson().skeleton.joints) {
     if (!joint.parent) {
       joint.parent = 0;
     } else if (*joint.parent == 0) {  // the spine hangs on the hips, the legs on the ground
@@ -169,7 +169,7 @@ std::optional<Vec3> landmarkOf(const std::vector<JointLandmark>& landmarks, cons
 }
 
 TEST(JointLandmarks, HipsAreInTheBodyAndNotOnTheGround) {
-  const Skeleton source = onTheGround(), target = testing::capsulePerson().skeleton;
+  const Skeleton source = onTheGround(), target = testing::riggedCapsulePerson().skeleton;
   const std::vector<JointLandmark> landmarks = commonLandmarks(source, target);
   const std::optional<Vec3> hips = landmarkOf(landmarks, source, "hips");
   ASSERT_TRUE(hips);
@@ -180,7 +180,7 @@ TEST(JointLandmarks, HipsAreInTheBodyAndNotOnTheGround) {
 TEST(JointLandmarks, EachJointHasOneAtMost) {
   const Skeleton source = onTheGround();
   std::vector<Index> joints;
-  for (const JointLandmark& landmark : commonLandmarks(source, testing::capsulePerson().skeleton)) {
+  for (const JointLandmark& landmark : commonLandmarks(source, testing::riggedCapsulePerson().skeleton)) {
     joints.push_back(landmark.joint);
   }
   std::sort(joints.begin(), joints.end());

@@ -19,7 +19,7 @@ namespace limber {
 
 namespace {
 
-using testing::capsulePerson;
+using testing::riggedCapsulePerson;
 using testing::SceneBuilder;
 
 Asset sceneOf(const TriMesh& mesh, const std::string& name) {
@@ -37,7 +37,7 @@ gltf::Attributes& attributesOf(Asset& asset) {
 }
 
 Asset riggedPerson(bool withShape = false) {
-  const RiggedBody person = capsulePerson();
+  const RiggedBody person = riggedCapsulePerson();
   Asset asset = sceneOf(person.mesh, "person.glb");
   if (withShape) {
     std::vector<float> offsets;
@@ -72,7 +72,7 @@ std::vector<Vec3> positionsIn(const Asset& asset) {
 // A target with a rig of its own, under other names: its joints are the landmarks.
 TEST(TransferAssetTest, PutsARigOntoABodyWithAnotherOne) {
   const Asset source = riggedPerson();
-  RiggedBody other = capsulePerson();
+  RiggedBody other = riggedCapsulePerson();
   for (Joint& joint : other.skeleton.joints) {
     joint.rest.translation *= 1.4;
     joint.name += "_old";
@@ -86,14 +86,14 @@ TEST(TransferAssetTest, PutsARigOntoABodyWithAnotherOne) {
   const Skeleton skeleton = readSkeleton(target).skeleton;
   ASSERT_EQ(skeleton.jointCount(), 15u);
   for (Index j = 0; j < 15; ++j) {
-    EXPECT_EQ(skeleton.joints[j].name, capsulePerson().skeleton.joints[j].name);
+    EXPECT_EQ(skeleton.joints[j].name, riggedCapsulePerson().skeleton.joints[j].name);
     EXPECT_LT((positionsIn(target)[j] - wanted[j]).norm(), 0.005) << skeleton.joints[j].name;
   }
 }
 
 TEST(TransferAssetTest, FindsTheLimbsOfABareBody) {
   const Asset source = riggedPerson();
-  Asset target = sceneOf(capsulePerson().mesh, "bare.obj");
+  Asset target = sceneOf(riggedCapsulePerson().mesh, "bare.obj");
   const TransferReport report = transferred(source, target);
   EXPECT_THAT(report.landmarksBy, ::testing::StartsWith("humanoid"));
   const Json json = toJson(report);
@@ -108,7 +108,7 @@ TEST(TransferAssetTest, FindsTheLimbsOfABareBody) {
 
 TEST(TransferAssetTest, BringsBlendShapesAlong) {
   const Asset source = riggedPerson(true);
-  RiggedBody turned = capsulePerson();
+  RiggedBody turned = riggedCapsulePerson();
   const Quat turn(Eigen::AngleAxisd(M_PI / 2, Vec3::UnitZ()));  // lies on its side: what was up is -x
   for (Vec3f& p : turned.mesh.positions) p = (turn * p.cast<double>()).cast<float>();
   for (Joint& joint : turned.skeleton.joints) joint.rest.translation = turn * joint.rest.translation;
@@ -122,7 +122,7 @@ TEST(TransferAssetTest, BringsBlendShapesAlong) {
   const std::vector<float> offsets = readFloats(target, mesh.primitives[0].targets.at(0).find("POSITION").value());
   double most = 0;
   for (Index v = 0; v < turned.mesh.vertexCount(); ++v) {
-    const bool isHat = capsulePerson().mesh.positions[v].y() > 1.6f;
+    const bool isHat = riggedCapsulePerson().mesh.positions[v].y() > 1.6f;
     most = std::max(
         most, (Vec3(offsets[3 * v], offsets[3 * v + 1], offsets[3 * v + 2]) - Vec3(isHat ? -0.05 : 0, 0, 0)).norm());
   }
@@ -139,7 +139,7 @@ TEST(TransferAssetTest, BringsBlendShapesAlong) {
 Asset liftedPerson() {
   Asset asset = riggedPerson();
   std::vector<float> offsets;
-  for (std::size_t v = 0; v < capsulePerson().mesh.positions.size(); ++v) {
+  for (std::size_t v = 0; v < riggedCapsulePerson().mesh.positions.size(); ++v) {
     offsets.insert(offsets.end(), {0, v % 2 == 0 ? 0.05f : 0.06f, 0});
   }
   asset.document.meshes[0].primitives[0].targets.emplace_back().set(
@@ -149,7 +149,7 @@ Asset liftedPerson() {
 
 // The person and a second mesh of one material, with the person's rig; the second hangs on the leg.
 Asset personAnd(const TriMesh& other) {
-  const RiggedBody person = capsulePerson();
+  const RiggedBody person = riggedCapsulePerson();
   SceneBuilder scene;
   for (const TriMesh& mesh : {person.mesh, other}) {
     Json primitive = scene.primitive(mesh.positions, mesh.triangles);
@@ -203,7 +203,7 @@ TEST(TransferAssetTest, AnInnerShellTakesTheShapesOfTheOuterOne) {
     return readFloats(target, primitive.targets.at(0).find("POSITION").value());
   };
   const std::vector<float> ofPerson = offsetsOf(0), ofInner = offsetsOf(1);
-  const std::vector<Vec3f>& positions = capsulePerson().mesh.positions;
+  const std::vector<Vec3f>& positions = riggedCapsulePerson().mesh.positions;
   const auto first = std::find(positions.begin(), positions.end(), outer.positions[0]) - positions.begin();
   ASSERT_LT(static_cast<std::size_t>(first), positions.size());
   Index alike = 0;  // the others lie where the spine comes through
@@ -227,7 +227,7 @@ TEST(TransferAssetTest, SkinsOfOtherPosesAreBroughtToOne) {
   const AssetSkeleton read = readSkeleton(target);
   const Geometry geometry = collectGeometry(target);
   const SkinWeights weights = readWeights(target, geometry, read);
-  const Index first = capsulePerson().mesh.vertexCount();
+  const Index first = riggedCapsulePerson().mesh.vertexCount();
   for (Index v = 0; v < bag.vertexCount(); ++v) {
     EXPECT_LT((geometry.positions[first + v] - bag.positions[v]).norm(), 1e-4f) << v;
     EXPECT_EQ(read.skeleton.joints[weights.jointsOf(first + v)[0]].name, "leftUpperLeg") << v;
@@ -236,7 +236,7 @@ TEST(TransferAssetTest, SkinsOfOtherPosesAreBroughtToOne) {
 
 // The file's own vertices are of half the size, its joints where the shape has the body.
 TEST(TransferAssetTest, TheTargetIsReadAsItsShapesHaveIt) {
-  RiggedBody person = capsulePerson();
+  RiggedBody person = riggedCapsulePerson();
   std::vector<float> offsets;
   for (Vec3f& p : person.mesh.positions) {
     p *= 0.5f;
@@ -254,7 +254,7 @@ TEST(TransferAssetTest, TheTargetIsReadAsItsShapesHaveIt) {
 
 // Half as large again, with a rig of its own.
 Asset tallPerson() {
-  RiggedBody tall = capsulePerson();
+  RiggedBody tall = riggedCapsulePerson();
   for (Joint& joint : tall.skeleton.joints) joint.rest.translation *= 1.5;
   for (Vec3f& p : tall.mesh.positions) p *= 1.5f;
   Asset asset = sceneOf(tall.mesh, "tall.glb");
@@ -264,7 +264,7 @@ Asset tallPerson() {
 
 TEST(TransferAssetTest, ColorsAreThoseOfThePointThatAVertexTakesAfter) {
   for (const bool isInsideOut : {false, true}) {
-    RiggedBody person = capsulePerson();
+    RiggedBody person = riggedCapsulePerson();
     if (isInsideOut) {
       for (Triangle& t : person.mesh.triangles) std::swap(t[1], t[2]);
     }
@@ -315,7 +315,7 @@ UnfoldedMesh unfolded(const TriMesh& mesh) {
 }
 
 TEST(TransferAssetTest, ColorsGoToATextureWhereTheTargetHasRoomForOne) {
-  const RiggedBody person = capsulePerson();
+  const RiggedBody person = riggedCapsulePerson();
   const UnfoldedMesh plan = unfolded(person.mesh);
   const Asset source = riggedPerson();
   const Geometry geometry = collectGeometry(source);
@@ -383,7 +383,7 @@ TEST(TransferAssetTest, WithoutColorsTheTargetsOwnStay) {
 TEST(TransferAssetTest, CanBeCancelledInEveryStage) {
   const Asset source = riggedPerson();
   for (const std::string stage : {"read geometry", "fit target: ", "transfer: "}) {
-    Asset target = stage == "fit target: " ? sceneOf(capsulePerson().mesh, "bare.obj") : tallPerson();
+    Asset target = stage == "fit target: " ? sceneOf(riggedCapsulePerson().mesh, "bare.obj") : tallPerson();
     const Json before = testing::documentJson(target);
     Progress progress([&](std::string_view message, double) {
       if (message.starts_with(stage)) progress.cancel();
@@ -413,7 +413,7 @@ const Vec3f kBack(0, 1.2f, -0.25f);
 
 Asset personAndBox(const char* name) {
   SceneBuilder scene;
-  const TriMesh& mesh = capsulePerson().mesh;
+  const TriMesh& mesh = riggedCapsulePerson().mesh;
   scene.addNode({{"mesh", scene.addMesh(Json::array({scene.primitive(mesh.positions, mesh.triangles)}))}});
   addBox(scene, name, kBack, 0.2f);
   scene.asset().document.scene = scene.addScene({0, 1});
@@ -425,7 +425,7 @@ Asset personAndBox(const char* name) {
 // The person's own rig; what the box hangs on is the leg, which no neighbour of it does.
 Asset riggedPersonAndBox(const char* name) {
   Asset asset = personAndBox(name);
-  const RiggedBody person = capsulePerson();
+  const RiggedBody person = riggedCapsulePerson();
   SkinWeights weights = person.weights;
   for (int corner = 0; corner < 8; ++corner) {
     weights.joints.insert(weights.joints.end(), {9, 0});
@@ -449,7 +449,7 @@ TEST(TransferAssetTest, AccessoriesOfTheTargetFollowOneJoint) {
   const TransferReport report = transferred(riggedPerson(), target);
   EXPECT_TRUE(tellsOfAccessories(report));
   const SkinWeights weights = weightsIn(target);
-  const Index first = capsulePerson().mesh.vertexCount();
+  const Index first = riggedCapsulePerson().mesh.vertexCount();
   ASSERT_EQ(weights.vertexCount(), first + 8);
   for (Index v = first; v < first + 8; ++v) {
     EXPECT_FLOAT_EQ(weights.weightsOf(v)[0], 1) << v;
@@ -481,7 +481,7 @@ TEST(TransferAssetTest, AccessoriesOfBothArePartOfThem) {
   const TransferReport report = transferred(riggedPersonAndBox("Backpack"), target);
   EXPECT_FALSE(tellsOfAccessories(report));
   const SkinWeights weights = weightsIn(target);
-  const Index first = capsulePerson().mesh.vertexCount();
+  const Index first = riggedCapsulePerson().mesh.vertexCount();
   for (Index v = first; v < first + 8; ++v) EXPECT_EQ(weights.jointsOf(v)[0], 9u) << v;
 }
 
@@ -492,7 +492,7 @@ TEST(TransferAssetTest, JointsKeepTheirNamesWhereNodesHaveThem) {
   const Skeleton skeleton = readSkeleton(target).skeleton;
   std::vector<std::string> names, wanted;
   for (const Joint& joint : skeleton.joints) names.push_back(joint.name);
-  for (const Joint& joint : capsulePerson().skeleton.joints) wanted.push_back(joint.name);
+  for (const Joint& joint : riggedCapsulePerson().skeleton.joints) wanted.push_back(joint.name);
   EXPECT_EQ(names, wanted);
   EXPECT_EQ(target.document.nodes[1].name, "head_2");
 }
@@ -511,8 +511,8 @@ void expectRefused(const Asset& source, Asset& target, const std::string& what) 
 }
 
 TEST(TransferAssetTest, RefusesASourceWithoutARig) {
-  Asset target = sceneOf(capsulePerson().mesh, "bare.obj");
-  expectRefused(sceneOf(capsulePerson().mesh, "plain.glb"), target, "plain.glb: has no rig to transfer");
+  Asset target = sceneOf(riggedCapsulePerson().mesh, "bare.obj");
+  expectRefused(sceneOf(riggedCapsulePerson().mesh, "plain.glb"), target, "plain.glb: has no rig to transfer");
 }
 
 TEST(TransferAssetTest, RefusesWhatIsNoBody) {

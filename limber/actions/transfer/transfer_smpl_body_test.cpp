@@ -189,7 +189,7 @@ TEST(SmplBodyTest, TakesNoHarmFromBrokenArrays) {
 }
 
 TEST(SmplBodyTest, ItsRigGoesOntoAnotherBody) {
-  const RiggedBody person = testing::capsulePerson();
+  const RiggedBody person = testing::riggedCapsulePerson();
   const Asset source = smplBody(arraysOf(person), "person.npz");
   RiggedBody other = person;
   for (Vec3f& p : other.mesh.positions) p *= 1.3f;

@@ -9,7 +9,7 @@ namespace limber {
 namespace {
 
 TEST(JointFollowTest, GoesAlongWithAShiftExactly) {
-  const RiggedBody person = testing::capsulePerson();
+  const RiggedBody person = testing::riggedCapsulePerson();
   const std::vector<Vec3> positions = testing::jointPositions(person.skeleton);
   std::vector<Vec3> after;
   for (Index v = 0; v < person.mesh.vertexCount(); ++v) after.push_back(person.mesh.position(v) + Vec3(0.1, -0.2, 0.3));
@@ -20,7 +20,7 @@ TEST(JointFollowTest, GoesAlongWithAShiftExactly) {
 }
 
 TEST(JointFollowTest, FollowsASmallAffineMap) {
-  const RiggedBody person = testing::capsulePerson();
+  const RiggedBody person = testing::riggedCapsulePerson();
   const std::vector<Vec3> positions = testing::jointPositions(person.skeleton);
   Mat3 map;
   map << 1.1, 0.05, 0, -0.04, 0.95, 0.02, 0.03, 0, 1.2;
@@ -31,7 +31,7 @@ TEST(JointFollowTest, FollowsASmallAffineMap) {
 }
 
 TEST(JointFollowTest, JointsWithoutVerticesGoAlongWithTheOneAbove) {
-  RiggedBody person = testing::capsulePerson();
+  RiggedBody person = testing::riggedCapsulePerson();
   Joint tip;
   tip.name = "leftHand_end";
   tip.parent = *person.skeleton.find("leftHand");

@@ -23,7 +23,7 @@ const Affine& similarity() {
 }
 
 TEST(LimbAlignmentTest, OfASimilarBodyIsTheSimilarity) {
-  const Skeleton skeleton = testing::capsulePerson().skeleton;
+  const Skeleton skeleton = testing::riggedCapsulePerson().skeleton;
   std::vector<Vec3> positions = jointPositions(skeleton);
   for (Vec3& position : positions) position = similarity() * position;
   std::vector<JointLandmark> landmarks = landmarksAt(positions);
@@ -36,7 +36,7 @@ TEST(LimbAlignmentTest, OfASimilarBodyIsTheSimilarity) {
 }
 
 TEST(LimbAlignmentTest, TakesTheSurfaceAlongALimb) {
-  const RiggedBody person = testing::capsulePerson();
+  const RiggedBody person = testing::riggedCapsulePerson();
   std::vector<Vec3> positions = jointPositions(person.skeleton);
   const Vec3 shoulder = positions[3];
   positions[4] = shoulder + Vec3(0, -0.4, 0);  // the upper arm hangs, and is longer
@@ -51,7 +51,7 @@ TEST(LimbAlignmentTest, TakesTheSurfaceAlongALimb) {
 
 // Hips without a landmark lie by the legs, wherever head and arms are.
 TEST(LimbAlignmentTest, NearLandmarksTellMoreThanFarOnes) {
-  const Skeleton skeleton = testing::capsulePerson().skeleton;
+  const Skeleton skeleton = testing::riggedCapsulePerson().skeleton;
   std::vector<Vec3> positions = jointPositions(skeleton);
   const Vec3 hips = positions[0];
   for (Index j = 2; j <= 8; ++j) positions[j] += Vec3(0, 0.5, 0);
@@ -62,7 +62,7 @@ TEST(LimbAlignmentTest, NearLandmarksTellMoreThanFarOnes) {
 }
 
 TEST(LimbAlignmentTest, RefusesLandmarksThatFitNoJoint) {
-  const Skeleton skeleton = testing::capsulePerson().skeleton;
+  const Skeleton skeleton = testing::riggedCapsulePerson().skeleton;
   const std::vector<Affine> globals = restGlobals(skeleton);
   using Landmarks = std::vector<JointLandmark>;
   for (const Landmarks& landmarks :
@@ -73,7 +73,7 @@ TEST(LimbAlignmentTest, RefusesLandmarksThatFitNoJoint) {
 }
 
 TEST(LimbAlignmentTest, MovedSkeletonsKeepNamesTreeAndScales) {
-  Skeleton skeleton = testing::capsulePerson().skeleton;
+  Skeleton skeleton = testing::riggedCapsulePerson().skeleton;
   skeleton.joints[0].rest.scale = Vec3::Constant(100);  // as exporters in centimetres have it
   const std::vector<Affine> globals = restGlobals(skeleton);
   std::vector<Vec3> positions = jointPositions(skeleton);

@@ -12,7 +12,7 @@ namespace {
 constexpr Index kHead = 2, kHand = 5;
 
 LimbAlignment fitted(const std::vector<JointLandmark>& landmarks, const TriMesh& target) {
-  const RiggedBody person = testing::capsulePerson();
+  const RiggedBody person = testing::riggedCapsulePerson();
   const std::vector<Affine> globals = restGlobals(person.skeleton);
   LimbAlignment alignment = alignLimbs(person.skeleton, globals, landmarks);
   fitGirths(person.skeleton, globals, landmarks, person.mesh, person.weights, target, alignment);
@@ -20,11 +20,11 @@ LimbAlignment fitted(const std::vector<JointLandmark>& landmarks, const TriMesh&
 }
 
 std::vector<JointLandmark> ownLandmarks() {
-  return testing::landmarksAt(testing::jointPositions(testing::capsulePerson().skeleton));
+  return testing::landmarksAt(testing::jointPositions(testing::riggedCapsulePerson().skeleton));
 }
 
 TEST(LimbGirthTest, OfTheSameBodyIsAsItWas) {
-  const LimbAlignment alignment = fitted(ownLandmarks(), testing::capsulePerson().mesh);
+  const LimbAlignment alignment = fitted(ownLandmarks(), testing::riggedCapsulePerson().mesh);
   for (std::size_t j = 0; j < alignment.maps.size(); ++j) {
     EXPECT_LT((alignment.maps[j].matrix() - Affine::Identity().matrix()).norm(), 1e-3) << j;
   }
@@ -38,7 +38,8 @@ TEST(LimbGirthTest, OfASimilarBodyIsTheSimilarity) {
   for (JointLandmark& landmark : landmarks) landmark.position = similarity * landmark.position;
   std::erase_if(landmarks, [](const JointLandmark& l) { return l.joint == kHand; });  // goes along with the arm
   const LimbAlignment alignment = fitted(
-      landmarks, testing::mapped(testing::capsulePerson().mesh, [&](const Vec3& p) -> Vec3 { return similarity * p; }));
+      landmarks,
+      testing::mapped(testing::riggedCapsulePerson().mesh, [&](const Vec3& p) -> Vec3 { return similarity * p; }));
   for (std::size_t j = 0; j < alignment.maps.size(); ++j) {
     EXPECT_LT((alignment.maps[j].matrix() - similarity.matrix()).norm(), 0.01) << j;
   }
@@ -82,7 +83,7 @@ TEST(LimbGirthTest, ThickensALimbButDoesNotLengthenIt) {
 // A head three times as large about its joint: found, and as large all round.
 TEST(LimbGirthTest, GrowsAHead) {
   const Vec3 neck = testing::personJoints()[kHead].position;
-  TriMesh target = testing::capsulePerson().mesh;
+  TriMesh target = testing::riggedCapsulePerson().mesh;
   const std::size_t ofEach = target.positions.size() / testing::personJoints().size();
   for (std::size_t v = kHead * ofEach; v < (kHead + 1) * ofEach; ++v) {
     target.positions[v] = (neck + 3 * (target.positions[v].cast<double>() - neck)).cast<float>();
@@ -95,7 +96,7 @@ TEST(LimbGirthTest, GrowsAHead) {
 // The bones lie outside of it, as where every landmark is wrong.
 TEST(LimbGirthTest, LeavesAloneWhatMeetsNothing) {
   const TriMesh target =
-      testing::mapped(testing::capsulePerson().mesh, [](const Vec3& p) -> Vec3 { return p + Vec3(9, 9, 9); });
+      testing::mapped(testing::riggedCapsulePerson().mesh, [](const Vec3& p) -> Vec3 { return p + Vec3(9, 9, 9); });
   const LimbAlignment alignment = fitted(ownLandmarks(), target);
   for (std::size_t j = 0; j < alignment.maps.size(); ++j) {
     EXPECT_LT((alignment.maps[j].matrix() - Affine::Identity().matrix()).norm(), 1e-6) << j;
@@ -104,7 +105,7 @@ TEST(LimbGirthTest, LeavesAloneWhatMeetsNothing) {
 
 // Half of the triangles, so that rays leave through holes, and some with no area.
 TEST(LimbGirthTest, TakesAnOpenTarget) {
-  TriMesh target = testing::capsulePerson().mesh;
+  TriMesh target = testing::riggedCapsulePerson().mesh;
   std::erase_if(target.triangles, [](const Triangle& t) { return (t[0] + t[1] + t[2]) % 2 == 0; });
   target.triangles.push_back({0, 0, 1});
   const LimbAlignment alignment = fitted(ownLandmarks(), target);

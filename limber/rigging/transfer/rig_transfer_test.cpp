@@ -12,9 +12,9 @@ namespace limber {
 
 namespace {
 
-using testing::capsulePerson;
 using testing::jointPositions;
 using testing::landmarksAt;
+using testing::riggedCapsulePerson;
 
 constexpr double kHeight = 1.76;  // of the person
 
@@ -72,7 +72,7 @@ RigTransfer transferPerson(const RiggedBody& source, const std::vector<JointLand
 }
 
 TEST(RigTransferTest, GivesACopyItsOwnRig) {
-  const RiggedBody person = capsulePerson();
+  const RiggedBody person = riggedCapsulePerson();
   const std::vector<Vec3> positions = jointPositions(person.skeleton);
   const RigTransfer result = transferPerson(person, roughLandmarks(positions, 0.03), person.mesh);
   EXPECT_LT(farthest(result.positions, positions), 1e-3);
@@ -81,7 +81,7 @@ TEST(RigTransferTest, GivesACopyItsOwnRig) {
 }
 
 TEST(RigTransferTest, FollowsATurnedAndScaledCopy) {
-  const RiggedBody person = capsulePerson();
+  const RiggedBody person = riggedCapsulePerson();
   Affine map = Affine::Identity();
   map.linear() = 2.5 * Eigen::AngleAxisd(1.2, Vec3(0.3, 1, -0.2).normalized()).toRotationMatrix();
   map.translation() = Vec3(3, -1, 0.5);
@@ -97,7 +97,7 @@ TEST(RigTransferTest, FollowsATurnedAndScaledCopy) {
 }
 
 TEST(RigTransferTest, GivesAFinerCopyTheSameWeights) {
-  const RiggedBody person = capsulePerson();
+  const RiggedBody person = riggedCapsulePerson();
   const std::vector<Vec3> positions = jointPositions(person.skeleton);
   const TriMesh fine = testing::cutInFour(person.mesh);
   const RigTransfer result = transferPerson(person, roughLandmarks(positions, 0.02), fine);
@@ -109,7 +109,7 @@ TEST(RigTransferTest, GivesAFinerCopyTheSameWeights) {
 
 // Longer legs, thicker above, bent a little forward: where the joints come to lie is known.
 TEST(RigTransferTest, FollowsASmoothDeformation) {
-  const RiggedBody person = capsulePerson();
+  const RiggedBody person = riggedCapsulePerson();
   const auto deform = [](const Vec3& p) {
     const double thick = 1 + 0.15 * std::sin(2 * p.y());
     return Vec3(thick * p.x(), 1.1 * p.y() + 0.03 * std::sin(4 * p.y()), 1.2 * p.z() + 0.05 * p.y() * p.y());
@@ -123,7 +123,7 @@ TEST(RigTransferTest, FollowsASmoothDeformation) {
 }
 
 TEST(RigTransferTest, FollowsAnotherPose) {
-  const RiggedBody person = capsulePerson();
+  const RiggedBody person = riggedCapsulePerson();
   Skeleton lowered = person.skeleton;
   lowered.joints[*lowered.find("leftUpperArm")].rest.rotation = Quat(Eigen::AngleAxisd(-0.9, Vec3::UnitZ()));
   lowered.joints[*lowered.find("rightUpperArm")].rest.rotation = Quat(Eigen::AngleAxisd(0.9, Vec3::UnitZ()));
@@ -138,7 +138,7 @@ TEST(RigTransferTest, FollowsAnotherPose) {
 }
 
 TEST(RigTransferTest, BindsAtMostAsManyJointsAsAskedFor) {
-  const RiggedBody person = capsulePerson();
+  const RiggedBody person = riggedCapsulePerson();
   RigTransferOptions options;
   options.maxInfluences = 1;
   options.registration.reaches = {0.05};
@@ -150,7 +150,7 @@ TEST(RigTransferTest, BindsAtMostAsManyJointsAsAskedFor) {
 }
 
 TEST(RigTransferTest, GivesTheSameEveryTime) {
-  const RiggedBody person = capsulePerson();
+  const RiggedBody person = riggedCapsulePerson();
   const auto landmarks = roughLandmarks(jointPositions(person.skeleton), 0.03);
   RigTransferOptions options;
   options.registration.reaches = {0.1, 0.02};

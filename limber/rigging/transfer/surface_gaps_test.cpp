@@ -9,7 +9,7 @@ namespace limber {
 namespace {
 
 TEST(SurfaceGapsTest, NamesThePartThatLiesApart) {
-  const RiggedBody person = testing::capsulePerson();
+  const RiggedBody person = testing::riggedCapsulePerson();
   const Index hand = *person.skeleton.find("leftHand");
   std::vector<SurfacePoint> points(person.mesh.vertexCount());
   for (Index v = 0; v < person.mesh.vertexCount(); ++v) {

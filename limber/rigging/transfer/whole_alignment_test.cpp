@@ -10,7 +10,7 @@ namespace limber {
 namespace {
 
 TEST(WholeAlignmentTest, FindsTheSimilarityOfACopy) {
-  const TriMesh person = testing::capsulePerson().mesh;
+  const TriMesh person = testing::riggedCapsulePerson().mesh;
   Affine map = Affine::Identity();
   map.linear() = 1.7 * Eigen::AngleAxisd(0.1, Vec3(0.2, 1, 0.1).normalized()).toRotationMatrix();
   map.translation() = Vec3(-2, 0.3, 1);
@@ -22,7 +22,7 @@ TEST(WholeAlignmentTest, FindsTheSimilarityOfACopy) {
 }
 
 TEST(WholeAlignmentTest, MeasuresHowFarSurfacesLieApart) {
-  const TriMesh person = testing::capsulePerson().mesh;
+  const TriMesh person = testing::riggedCapsulePerson().mesh;
   EXPECT_LT(surfacesApart(person, person), 1e-6);
   const auto shifted = [&](double by) {
     return surfacesApart(testing::mapped(person, [&](const Vec3& p) { return Vec3(p + Vec3(0, 0, by)); }), person);

@@ -45,7 +45,7 @@ inline double distanceToBone(const PersonJoint& bone, const Vec3& p) {
 }
 
 // Fifteen capsules that lie in each other, each a piece of its own; a vertex follows the two bones that are nearest.
-inline RiggedBody capsulePerson() {
+inline RiggedBody riggedCapsulePerson() {
   RiggedBody body;
   for (const PersonJoint& bone : personJoints()) {
     addCapsule(body.mesh, bone.position, bone.end, bone.radius);
