@@ -1,5 +1,7 @@
 #include "limber/rigging/measured_model.h"
 
+#include <utility>
+
 #include "limber/geometry/surface/stray_pieces.h"
 #include "limber/reading/learned_reading.h"
 #include "limber/reading/shape_weights.h"
@@ -15,18 +17,15 @@ std::shared_ptr<const MeasuredModel> measureModel(const TriMesh& mesh, const Rig
     const bool isAskedAlike = known.up == options.up && known.front == options.front && known.weights == weights;
     if (isSame && isAskedAlike) return options.memory->measured;
   }
-  auto model = std::make_shared<MeasuredModel>();
-  model->vertices = mesh.vertexCount();
-  model->triangles = mesh.triangleCount();
-  model->up = options.up;
-  model->front = options.front;
-  model->weights = weights;
-  model->cleared = withoutStrays(mesh);
-  const TriMesh& surface = model->cleared ? *model->cleared : mesh;
-  model->body = measureBody(surface);
-  model->samples = sampleSurface(surface, weights->sampleCount());
-  model->frame = likeliestFrame(possibleFrames(surface, model->body, options.up, options.front),
-                                stanceOf(model->samples, *weights));
+  std::optional<TriMesh> cleared = withoutStrays(mesh);
+  const TriMesh& surface = cleared ? *cleared : mesh;
+  BodyVolume body = measureBody(surface);
+  SurfaceSamples samples = sampleSurface(surface, weights->sampleCount());
+  RoleReading reading = readInLikeliestFrame(possibleFrames(surface, body, options.up, options.front),
+                                             stanceOf(samples, *weights), samples, *weights);
+  const auto model = std::make_shared<const MeasuredModel>(
+      MeasuredModel{mesh.vertexCount(), mesh.triangleCount(), options.up, options.front, weights, std::move(cleared),
+                    std::move(body), std::move(samples), std::move(reading)});
   if (options.memory) options.memory->measured = model;
   return model;
 }

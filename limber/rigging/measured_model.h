@@ -4,11 +4,9 @@
 #include <memory>
 #include <optional>
 
-#include "limber/core/lazy.h"
 #include "limber/reading/surface_samples.h"
 #include "limber/reading/weights_file.h"
 #include "limber/rigging/auto_rigger.h"
-#include "limber/rigging/body/anatomical_frame.h"
 #include "limber/rigging/body/body_volume.h"
 #include "limber/rigging/roles/role_reading.h"
 
@@ -21,17 +19,14 @@ struct MeasuredModel {
   std::optional<TriMesh> cleared;  // of stray pieces (withoutStrays); none where the mesh has none
   BodyVolume body;
   SurfaceSamples samples;
-  AnatomicalFrame frame;
-  Lazy<RoleReading> lazyReading;
+  RoleReading reading;  // without known joints
 
-  // Without known joints; made once. Throws Error as readSamples does.
-  const RoleReading& reading() const {
-    return lazyReading.get([&] { return RoleReading(samples, *weights, frame); });
-  }
+  const AnatomicalFrame& frame() const { return reading.frame(); }
 };
 
 // Reads up, front and networks of the options (shapeWeights where they have none); asks their memory first, and leaves
-// the result there. Throws Error as measureBody and sampleSurface do.
+// the result there. Throws Error as measureBody, sampleSurface and
+// readSamples do.
 std::shared_ptr<const MeasuredModel> measureModel(const TriMesh& mesh, const RigOptions& options);
 
 }  // namespace limber

@@ -67,13 +67,13 @@ RigCheck checkRigging(const TriMesh& mesh, const RigOptions& options) {
   const std::optional<BareSurface> bare = withoutLooseVertices(mesh);  // as riggers are given it
   const TriMesh& surface = bare ? bare->mesh : mesh;
   const std::shared_ptr<const MeasuredModel> measured = measureModel(surface, options);
-  const RoleReading& reading = measured->reading();
+  const RoleReading& reading = measured->reading;
   RigCheck check;
   check.kinds = matchesOf(reading, *measured->weights);
   dropUnlikely(check.kinds);
   const TemplateMatch& likeliest = check.kinds.front();
   check.isSure = likeliest.confidence >= kSureTemplate;
-  check.isUpright = measured->frame.axes(1, 1) > std::cos(kPi / 4);
+  check.isUpright = measured->frame().axes(1, 1) > std::cos(kPi / 4);
   const std::string_view plan = planOfKind(likeliest.name);
   if (reading.probability(plan) < kLikelyTemplate) return check;  // what a thing lacks says nothing
   const RoledSkeleton made = skeletonNamed(likeliest.name, reading);

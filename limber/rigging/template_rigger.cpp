@@ -112,11 +112,11 @@ TemplateFit fitTemplate(std::string_view name, const TriMesh& mesh, const Readin
   RigOptions options;
   options.reading = std::make_shared<const ReadingWeights>(weights);
   const std::shared_ptr<const MeasuredModel> measured = measureModel(mesh, options);
-  RoleReading reading = measured->reading();
-  if (measured->frame.symmetric()) reading.makeSymmetric();
+  RoleReading reading = measured->reading;
+  if (measured->frame().symmetric()) reading.makeSymmetric();
   RoledSkeleton made = skeletonNamed(name, reading);
   std::vector<Vec3> positions = placedJoints(made, reading, TemplatePins(made.skeleton.joints.size()));
-  return {std::move(made.skeleton), measured->frame, std::move(positions)};
+  return {std::move(made.skeleton), measured->frame(), std::move(positions)};
 }
 
 AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress& progress) {
@@ -125,9 +125,9 @@ AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress
   progress.step("measure body");
   const std::shared_ptr<const MeasuredModel> measured = measureModel(mesh, options);
   const ReadingWeights& weights = *measured->weights;
-  const AnatomicalFrame& frame = measured->frame;
+  const AnatomicalFrame& frame = measured->frame();
   progress.step("read shape");
-  RoleReading reading = measured->reading();
+  RoleReading reading = measured->reading;
   std::vector<TemplateMatch> matches;
   std::string kind = options.templateName;
   if (kind == "auto" && !options.templateSkeleton) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "limber/core/text/numbers.h"
 
@@ -13,6 +14,9 @@ namespace {
 constexpr double kAsymmetryScale = 0.1;   // asymmetry that counts as much as e times less probability of a stance
 constexpr double kMinProbability = 1e-3;  // of a stance
 constexpr double kUnusualUp = 0.1;        // models whose up is neither +Y nor +Z, to those whose up is one of these
+constexpr std::size_t kMostFrames = 4;    // that are read
+constexpr double kDoubt = 4;              // logarithm of likelihoods' ratio up to which a frame is read
+constexpr double kIndependentJoints = 8;  // joints err together: all count as much as so many that err on their own
 
 // Of those with an axis that is up and one that is front. Rows: left, up, front.
 double probabilityOf(const Mat3& axes, const LearnedStance& stance) {
@@ -32,14 +36,30 @@ double priorOf(const AnatomicalFrame& frame) {
 
 }  // namespace
 
-AnatomicalFrame likeliestFrame(const std::vector<AnatomicalFrame>& frames, const LearnedStance& stance) {
-  const auto likelihood = [&](const AnatomicalFrame& frame) {
-    const double probability = priorOf(frame) * std::max(probabilityOf(frame.axes, stance), kMinProbability);
-    return std::log(probability) - frame.asymmetry / kAsymmetryScale;
+RoleReading readInLikeliestFrame(const std::vector<AnatomicalFrame>& frames, const LearnedStance& stance,
+                                 const SurfaceSamples& surface, const ReadingWeights& weights) {
+  struct Candidate {
+    const AnatomicalFrame* frame;
+    double likelihood;  // logarithm
   };
-  return *std::max_element(frames.begin(), frames.end(), [&](const AnatomicalFrame& a, const AnatomicalFrame& b) {
-    return likelihood(a) < likelihood(b);
-  });
+  std::vector<Candidate> candidates;
+  for (const AnatomicalFrame& frame : frames) {
+    const double probability = priorOf(frame) * std::max(probabilityOf(frame.axes, stance), kMinProbability);
+    candidates.push_back({&frame, std::log(probability) - frame.asymmetry / kAsymmetryScale});
+  }
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.likelihood > b.likelihood; });
+  RoleReading best(surface, weights, *candidates.front().frame);
+  double bestLikelihood = candidates.front().likelihood - kIndependentJoints * best.meanLogError();
+  for (std::size_t k = 1; k < std::min(candidates.size(), kMostFrames); ++k) {
+    if (candidates[k].likelihood < candidates.front().likelihood - kDoubt) break;
+    RoleReading reading(surface, weights, *candidates[k].frame);
+    const double likelihood = candidates[k].likelihood - kIndependentJoints * reading.meanLogError();
+    if (likelihood <= bestLikelihood) continue;
+    bestLikelihood = likelihood;
+    best = std::move(reading);
+  }
+  return best;
 }
 
 }  // namespace limber

@@ -1,15 +1,22 @@
-// How a body stands, by its symmetry and by what the learned reading says.
+// How a body stands, by its symmetry and by what the networks say.
 #pragma once
 
 #include <vector>
 
 #include "limber/reading/learned_reading.h"
 #include "limber/rigging/body/anatomical_frame.h"
+#include "limber/rigging/roles/role_reading.h"
 
 namespace limber {
 
-// frames  one or more (possibleFrames)
-// stance  of the same mesh
-AnatomicalFrame likeliestFrame(const std::vector<AnatomicalFrame>& frames, const LearnedStance& stance);
+// The reading in the likeliest frame. Frames that symmetry and stance leave in doubt, front or back mostly, are told
+// apart by where joints are expected to err less: the networks learned from bodies that stand as they should.
+//
+// frames   one or more (possibleFrames)
+// stance   of the same mesh
+// surface  of the same mesh
+// Throws Error as readSamples does. Cost: a reading for each frame in doubt, kMostFrames at most.
+RoleReading readInLikeliestFrame(const std::vector<AnatomicalFrame>& frames, const LearnedStance& stance,
+                                 const SurfaceSamples& surface, const ReadingWeights& weights);
 
 }  // namespace limber

@@ -11,6 +11,7 @@ namespace {
 
 // Of the predicted start of a sample's bone from the joint where that bone begins: heights.
 constexpr double kNearStart = 0.06;
+constexpr double kLeastError = 1e-6;    // heights
 constexpr double kFewestSamples = 1.5;  // sum of weights, 1 for each sample whose bone begins at the joint
 
 std::optional<Index> indexOf(const std::vector<std::string>& names, std::string_view name) {
@@ -52,6 +53,16 @@ Vec3 RoleReading::position(const RolePosition& at) const {
 double RoleReading::expectedError(const RolePosition& at) const {
   const double from = reading_.joints[roleOf(at.from)].expectedError, to = reading_.joints[roleOf(at.to)].expectedError;
   return (from + at.fraction * (to - from)) / frame_.height;
+}
+
+double RoleReading::meanLogError() const {
+  double sum = 0, weight = 0;
+  for (const LearnedJoint& joint : reading_.joints) {
+    if (joint.known) continue;
+    sum += joint.confidence * std::log(std::max(joint.expectedError, kLeastError * frame_.height));
+    weight += joint.confidence;
+  }
+  return weight > 0 ? sum / weight : 0;
 }
 
 std::optional<Vec3> RoleReading::boneEnd(std::string_view part, const Vec3& start) const {

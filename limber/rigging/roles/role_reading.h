@@ -27,6 +27,9 @@ class RoleReading {
   Vec3 position(const RolePosition& at) const;
   double expectedError(const RolePosition& at) const;
 
+  // Natural logarithm of joints' expected errors in the mesh's space: mean over what is a joint, by its confidence.
+  double meanLogError() const;
+
   // Where the bone ends that begins at `start` and carries samples of that part: the mean of what these say. None where
   // hardly any do.
   std::optional<Vec3> boneEnd(std::string_view part, const Vec3& start) const;
