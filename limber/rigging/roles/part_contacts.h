@@ -11,7 +11,7 @@
 
 namespace limber {
 
-// Names of ReadingWeights::parts; `length` of the border between them, heights.
+// Names of ReadingWeights::parts; `length` of the border between them, which zigzags between vertices, heights.
 struct PartContact {
   std::string one, other;
   double length = 0;

@@ -10,6 +10,7 @@ namespace limber {
 namespace {
 
 constexpr int kCells = 20;
+constexpr double kZigzag = 1.5;  // of a border between triangles, to a straight one
 
 // A sheet from `corner`, `size` large in x and y.
 void addSheet(TriMesh& mesh, const Vec3f& corner, const Vec3f& size) {
@@ -61,7 +62,8 @@ TEST(PartContacts, AHandIsNotOfTheThigh) {
   ASSERT_EQ(contacts.size(), 1u);
   EXPECT_EQ(contacts[0].one, "fore_end.L");
   EXPECT_EQ(contacts[0].other, "hind_upper.L");
-  EXPECT_NEAR(contacts[0].length, 1, 0.1);
+  EXPECT_GE(contacts[0].length, 1);
+  EXPECT_LE(contacts[0].length, kZigzag);
   for (const auto& [one, other] : {std::pair("fore_end.L", "fore_end.R"), std::pair("hind_lower.L", "hind_lower.R"),
                                    std::pair("fore_lower.L", "trunk"), std::pair("fore_upper.L", "head")}) {
     EXPECT_EQ(contactsBetween(one, other).size(), 1u) << one << " and " << other;
@@ -88,7 +90,8 @@ TEST(PartContacts, LengthsAreOfTheBodysHeight) {
   const auto partAt = [](const Vec3& p) { return p.x() < 0.5 ? "fore_end.L" : "hind_upper.L"; };
   const std::vector<PartContact> contacts = contactsOf(square(), partAt, 10);
   ASSERT_EQ(contacts.size(), 1u);
-  EXPECT_NEAR(contacts[0].length, 0.1, 0.01);
+  EXPECT_GE(contacts[0].length, 0.1);
+  EXPECT_LE(contacts[0].length, 0.1 * kZigzag);
   EXPECT_TRUE(contactsOf(square(), partAt, 50).empty());  // 0.02 heights hold nothing together
 }
 
