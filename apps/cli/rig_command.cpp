@@ -329,7 +329,7 @@ void addRigCommand(CLI::App& program) {
                     "give capes, scarves, braids and tails joints that swing (VRMC_springBone)");
   command
       ->add_option("--reading", options->reading,
-                   "networks of your own, asked where no template suits the model: a file of ./dev learn export")
+                   "networks of your own that read the shape: a file of ./dev learn export")
       ->type_name("FILE");
   command->add_option("--skinning", request.skinning, "how weights are made, see below")
       ->type_name("NAME")

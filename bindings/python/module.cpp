@@ -410,7 +410,7 @@ pins            where joints of a template must be: {"leftHand": (x, y, z)}, met
 up, front       how the model stands, for a template: "+x", "-x", "+y", ...; None: found
 upright         turn a model that surely stands along another axis to stand along +Y
 chains          give capes, scarves, braids and tails joints that swing (VRMC_springBone)
-reading         networks of your own, asked where no template suits the model: the path of a file of ./dev learn export
+reading         networks of your own that read the shape: the path of a file of ./dev learn export
 target          joints' names, root and axes as another program expects them: a name of limber.targets()
 progress        called as progress(stage, fraction) a few times a second; what it raises stops the work
 Ctrl-C stops it. Where it does not end well, the model is as it was.)";
