@@ -43,33 +43,6 @@ std::vector<MedialSphere> medialSpheres(const SignedDistance& distance, const In
   return spheres;
 }
 
-// One end after the other: the node farthest from the middle, then the one farthest from the paths to all ends so far.
-std::vector<BodyTip> findTips(const SignedDistance& distance, InsideGraph& graph,
-                              const std::vector<std::size_t>& inside) {
-  Vec3 middle = Vec3::Zero();
-  for (const std::size_t node : inside) middle += distance.position(node) / static_cast<double>(inside.size());
-  const std::size_t root = *std::min_element(inside.begin(), inside.end(), [&](std::size_t a, std::size_t b) {
-    return (distance.position(a) - middle).squaredNorm() < (distance.position(b) - middle).squaredNorm();
-  });
-  std::vector<float> distances;
-  std::vector<std::size_t> from;
-  graph.spreadToAll(root, inside, distances, from);
-  std::vector<std::size_t> sources = {root};
-  std::vector<BodyTip> tips;
-  while (tips.size() < kMaxTips) {
-    graph.spread(sources, distances, from);
-    std::size_t tip = root;
-    for (const std::size_t node : inside) {
-      if (std::isfinite(distances[node]) && distances[node] > distances[tip]) tip = node;
-    }
-    if (distances[tip] < kMinReach) break;
-    tips.push_back({distance.position(tip), distances[tip]});
-    sources.clear();
-    for (std::size_t node = tip; distances[node] > 0; node = from[node]) sources.push_back(node);
-  }
-  return tips;
-}
-
 }  // namespace
 
 BodyVolume measureBody(const TriMesh& mesh) {
@@ -81,20 +54,47 @@ BodyVolume measureBody(const TriMesh& mesh) {
   body.distance = std::make_unique<const SignedDistance>(mesh, *surface, *winding,
                                                          cellsForNodes(mesh, kMaxNodes, kMinCells, kMaxCells));
   const SignedDistance& distance = *body.distance;
-  InsideGraph graph(distance);
+  const InsideGraph graph(distance);
   const std::vector<std::size_t> inside = graph.insideNodes();
   if (inside.empty()) {
     throw Error(ErrorCode::kUnsupported, "nothing lies inside the model, so that no skeleton fits into it", {},
                 "it is flat or too thin; the rigger sphere-mesh takes such models");
   }
-  body.insideFraction = static_cast<double>(inside.size()) / static_cast<double>(distance.nodeCount());
   body.spheres = medialSpheres(distance, graph, inside);
   if (body.spheres.empty()) {
     throw Error(ErrorCode::kUnsupported, "the model's inside cannot be told from its outside", {},
                 "faces may lie on each other many times: merge them; the rigger sphere-mesh takes such models");
   }
-  body.tips = findTips(distance, graph, inside);
   return body;
+}
+
+// One end after the other: the node farthest from the middle, then the one farthest from the paths to all ends so far.
+std::vector<Vec3> limbTips(const BodyVolume& body) {
+  const SignedDistance& distance = *body.distance;
+  InsideGraph graph(distance);
+  const std::vector<std::size_t> inside = graph.insideNodes();
+  Vec3 middle = Vec3::Zero();
+  for (const std::size_t node : inside) middle += distance.position(node) / static_cast<double>(inside.size());
+  const std::size_t root = *std::min_element(inside.begin(), inside.end(), [&](std::size_t a, std::size_t b) {
+    return (distance.position(a) - middle).squaredNorm() < (distance.position(b) - middle).squaredNorm();
+  });
+  std::vector<float> distances;
+  std::vector<std::size_t> from;
+  graph.spreadToAll(root, inside, distances, from);
+  std::vector<std::size_t> sources = {root};
+  std::vector<Vec3> tips;
+  while (tips.size() < kMaxTips) {
+    graph.spread(sources, distances, from);
+    std::size_t tip = root;
+    for (const std::size_t node : inside) {
+      if (std::isfinite(distances[node]) && distances[node] > distances[tip]) tip = node;
+    }
+    if (distances[tip] < kMinReach) break;
+    tips.push_back(distance.position(tip));
+    sources.clear();
+    for (std::size_t node = tip; distances[node] > 0; node = from[node]) sources.push_back(node);
+  }
+  return tips;
 }
 
 }  // namespace limber

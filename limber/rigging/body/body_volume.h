@@ -15,17 +15,9 @@ struct MedialSphere {
   double radius = 0;
 };
 
-// The end of a limb: as far from the middle, inside the model, as it goes thereabouts.
-struct BodyTip {
-  Vec3 position = Vec3::Zero();
-  double reach = 0;  // path length through the inside to the ends found before and the paths there; longest side 1
-};
-
 struct BodyVolume {
   std::unique_ptr<const SignedDistance> distance;
   std::vector<MedialSphere> spheres;  // deepest first, a few hundred
-  std::vector<BodyTip> tips;          // farthest first
-  double insideFraction = 0;          // part of the grid's nodes that lie inside
 };
 
 // Whole pieces that are turned inside out are turned back first; what lies inside is told by the winding number.
@@ -34,5 +26,9 @@ struct BodyVolume {
 // Throws Error kUnsupported where nothing lies inside (a flat sheet), or inside and outside cannot be told apart. Cost:
 // O(#F log #F), and a grid of 80 cells along the longest side.
 BodyVolume measureBody(const TriMesh& mesh);
+
+// The ends of limbs, each as far from the middle, inside the model, as it goes thereabouts. Farthest first, by the path
+// to the ends before it and the paths there.
+std::vector<Vec3> limbTips(const BodyVolume& body);
 
 }  // namespace limber

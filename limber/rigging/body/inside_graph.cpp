@@ -80,7 +80,6 @@ void InsideGraph::spreadToAll(std::size_t source, const std::vector<std::size_t>
 }
 
 bool InsideGraph::isOpen(std::size_t node) const {
-  if (!blocked_.empty() && blocked_[node]) return false;
   const auto& size = distance_.size();
   const std::size_t index[3] = {node % size[0], node / size[0] % size[1], node / size[0] / size[1]};
   for (int axis = 0; axis < 3; ++axis) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <utility>
 #include <vector>
 
 #include "limber/geometry/mesh/signed_distance.h"
@@ -21,12 +20,8 @@ class InsideGraph {
   // Whether no neighbor is much deeper.
   bool medial(std::size_t node) const;
 
-  // Nodes that count as outside from now on, and that no path crosses; #nodes.
-  void block(std::vector<bool> nodes) { blocked_ = std::move(nodes); }
   // All nodes that are inside.
   std::vector<std::size_t> insideNodes() const;
-  // The 26 round an inside node, as steps to them.
-  const std::vector<std::ptrdiff_t>& steps() const { return steps_; }
 
   // Lowers `distances` (#nodes) to those from `sources`, and records in `from` (#nodes) the previous node of each path.
   void spread(const std::vector<std::size_t>& sources, std::vector<float>& distances,
@@ -40,9 +35,8 @@ class InsideGraph {
   bool isOpen(std::size_t node) const;
 
   const SignedDistance& distance_;
-  std::vector<std::ptrdiff_t> steps_;
-  std::vector<double> lengths_;  // of the steps, in spacings
-  std::vector<bool> blocked_;    // none: all are open
+  std::vector<std::ptrdiff_t> steps_;  // to the 26 nodes round one
+  std::vector<double> lengths_;        // of the steps, in spacings
   double gap_ = 0;
 };
 
