@@ -225,20 +225,6 @@ RoledSkeleton skeletonOfKind(const BodyKind& kind, const RoleReading& reading) {
   return SkeletonBuilder(kind, reading).build(kind.plan);
 }
 
-RoledSkeleton withRoles(TemplateSkeleton skeleton, const Skeleton& rest, const Anatomy& anatomy) {
-  RoledSkeleton made = {std::move(skeleton), jointRoles(rest, anatomy)};
-  made.roles.resize(made.skeleton.joints.size());
-  for (std::size_t j = 0; j < made.roles.size(); ++j) {
-    TemplateJoint& joint = made.skeleton.joints[j];
-    if (joint.role == TemplateRole::kTip) {
-      made.roles[j] = joint.parent ? made.roles[*joint.parent] : std::nullopt;
-    } else {
-      joint.role = made.roles[j] ? TemplateRole::kPlaced : TemplateRole::kBetween;
-    }
-  }
-  return made;
-}
-
 std::string partOfRole(std::string_view role) {
   const bool isSided = role.size() > 2 && role[role.size() - 2] == '.';
   const std::string side(isSided ? role.substr(role.size() - 2) : std::string_view());

@@ -34,10 +34,6 @@ struct RoledSkeleton {
 // The kind's skeleton for a body: with the limbs that it has.
 RoledSkeleton skeletonOfKind(const BodyKind& kind, const RoleReading& reading);
 
-// A skeleton whose joints are given. Joints with a role are placed, all others lie between.
-// anatomy  of `rest`, whose joints are the first of the template's, in the same order
-RoledSkeleton withRoles(TemplateSkeleton skeleton, const Skeleton& rest, const Anatomy& anatomy);
-
 // The part of the surface (ReadingWeights::parts) that the joint of a role moves.
 std::string partOfRole(std::string_view role);
 

@@ -7,7 +7,6 @@
 
 #include <gtest/gtest.h>
 
-#include "limber/character/anatomy/testing/bodies.h"
 #include "limber/reading/shape_weights.h"
 #include "limber/rigging/body/testing/capsule_animal.h"
 
@@ -244,29 +243,6 @@ TEST(BodyKinds, FishHaveTheFinsThatTheBodyHas) {
   }
   const RoleReading finned = readingOf(testing::capsuleFish(), {{"fin0_0.L", Vec3(0.2, 0.5, 0.5)}});
   EXPECT_EQ(roleOf(skeletonOfKind(*findBodyKind("fish"), finned), "rightFin"), "fin0_0.R");
-}
-
-TEST(BodyKinds, GivenJointsWithRolesArePlaced) {
-  Skeleton person = testing::vrmPerson();
-  testing::addJoint(person, "Sword", "rightHand", {-0.1, 0, 0.1});
-  testing::addJoint(person, "SwordTip", "Sword", {0, 0, 0.6});
-  const FixedLabel label = {*person.find("Sword"), PartKind::kProp};
-  AnatomyOptions options;
-  options.fixed = {&label, 1};
-  const RoledSkeleton made = withRoles(templateFrom(person, "mine"), person, readAnatomy(person, options));
-  ASSERT_EQ(made.roles.size(), made.skeleton.joints.size());
-  for (std::size_t j = 0; j < made.roles.size(); ++j) {
-    const TemplateJoint& joint = made.skeleton.joints[j];
-    SCOPED_TRACE(joint.name);
-    if (joint.role == TemplateRole::kTip) {
-      ASSERT_TRUE(joint.parent);
-      EXPECT_EQ(made.roles[j].has_value(), made.roles[*joint.parent].has_value());
-    } else {
-      EXPECT_EQ(joint.role == TemplateRole::kPlaced, made.roles[j].has_value());
-    }
-  }
-  EXPECT_EQ(roleOf(made, "rightHand"), "fore_end.R");
-  EXPECT_EQ(roleOf(made, "Sword"), "");
 }
 
 TEST(PartOfRole, IsThePartThatTheJointMoves) {

@@ -7,7 +7,6 @@
 #include "limber/rigging/roles/placed_joints.h"
 #include "limber/rigging/roles/roled_templates.h"
 #include "limber/rigging/templates/humanoid_landmarks.h"
-#include "limber/rigging/templates/joints_between.h"
 #include "limber/rigging/templates/quadruped_landmarks.h"
 
 namespace limber {
@@ -36,9 +35,11 @@ void refineRoles(std::string_view plan, const BodyVolume& body, RoleReading& rea
   }
   const std::vector<Vec3> read = placedJoints(made, reading, pins);
   std::vector<Vec3> positions = read;
-  refineHumanoid(made.skeleton, body, reading.frame(), pins, positions);
-  placeBetween(made.skeleton, positions);
-  refineQuadruped(made.skeleton, body, reading.frame(), pins, positions);
+  if (plan == "four") {
+    refineQuadruped(made.skeleton, body, reading.frame(), pins, positions);
+  } else {
+    refineHumanoid(made.skeleton, body, reading.frame(), pins, positions);
+  }
   for (std::size_t j = 0; j < joints.size(); ++j) {
     if (joints[j].role == TemplateRole::kTip || pins[j] || !made.roles[j] || !made.roles[j]->isRole()) continue;
     const std::string& role = made.roles[j]->from;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "limber/character/anatomy/anatomy.h"
@@ -33,23 +34,31 @@ void raiseHeels(RoledSkeleton& made) {
 
 }  // namespace
 
+RoledSkeleton withRoles(TemplateSkeleton skeleton, std::vector<std::optional<RolePosition>> roles) {
+  RoledSkeleton made = {std::move(skeleton), std::move(roles)};
+  made.roles.resize(made.skeleton.joints.size());
+  for (std::size_t j = 0; j < made.roles.size(); ++j) {
+    TemplateJoint& joint = made.skeleton.joints[j];
+    if (joint.role == TemplateRole::kTip) {
+      made.roles[j] = joint.parent ? made.roles[*joint.parent] : std::nullopt;
+    } else {
+      joint.role = made.roles[j] ? TemplateRole::kPlaced : TemplateRole::kBetween;
+    }
+  }
+  return made;
+}
+
 RoledSkeleton templateWithRoles(std::string_view name, const RoleReading& reading) {
   const TemplateSkeleton& skeleton = findTemplate(name);
   std::vector<Vec3> positions;
   for (const TemplateJoint& joint : skeleton.joints) positions.push_back(joint.position);
   const Skeleton rest = standingSkeleton(skeleton, positions, {});
-  const std::vector<std::optional<RolePosition>> roles = jointRoles(rest, readAnatomy(rest));
+  std::vector<std::optional<RolePosition>> roles = jointRoles(rest, readAnatomy(rest));
   // Tips are among the template's joints, and no joints of the rest pose.
-  RoledSkeleton made = {skeleton, {}};
-  Index next = 0;
-  for (TemplateJoint& joint : made.skeleton.joints) {
-    if (joint.role == TemplateRole::kTip) {
-      made.roles.push_back(made.roles[*joint.parent]);
-    } else {
-      made.roles.push_back(roles[next++]);
-      joint.role = made.roles.back() ? TemplateRole::kPlaced : TemplateRole::kBetween;
-    }
+  for (Index j = 0; j < skeleton.jointCount(); ++j) {
+    if (skeleton.joints[j].role == TemplateRole::kTip) roles.insert(roles.begin() + j, std::nullopt);
   }
+  RoledSkeleton made = withRoles(skeleton, std::move(roles));
   if (hasRaisedHeels(reading)) raiseHeels(made);
   return made;
 }
@@ -65,7 +74,7 @@ RoledSkeleton ownWithRoles(const Skeleton& skeleton, std::string_view name) {
     joint.rest.translation = axes * joint.rest.translation;
     joint.rest.rotation = Quat(axes) * joint.rest.rotation;
   }
-  return withRoles(templateFrom(standing, name), standing, anatomy);
+  return withRoles(templateFrom(standing, name), jointRoles(standing, anatomy));
 }
 
 }  // namespace limber

@@ -1,10 +1,8 @@
 #include "limber/rigging/templates/template_skeleton.h"
 
-#include <algorithm>
 #include <cctype>
 #include <cmath>
-
-#include <fmt/format.h>
+#include <utility>
 
 #include "limber/core/error.h"
 
@@ -12,8 +10,6 @@ namespace limber {
 
 namespace {
 
-constexpr double kStraight = 0.05;      // radians that a chain turns at a joint that lies between
-constexpr double kMinBone = 0.04;       // heights of a bone whose end is placed
 constexpr double kPinnedEvenly = 0.01;  // heights between a pin and the mirror image of the other
 constexpr double kSamePosition = 0.02;  // heights between a position and its mirror image
 
@@ -81,24 +77,6 @@ void addTips(TemplateSkeleton& skeleton, const std::vector<Index>& children) {
   }
 }
 
-void chooseRoles(TemplateSkeleton& skeleton, const std::vector<Index>& children) {
-  for (Index j = 0; j < skeleton.jointCount(); ++j) {
-    TemplateJoint& joint = skeleton.joints[j];
-    if (!joint.parent) continue;
-    const Vec3 above = joint.position - skeleton.joints[*joint.parent].position;
-    if (children[j] > 1) continue;
-    bool between = above.norm() < kMinBone;
-    if (children[j] == 1) {
-      const auto child = std::find_if(skeleton.joints.begin() + j + 1, skeleton.joints.end(),
-                                      [&](const TemplateJoint& other) { return other.parent == j; });
-      const Vec3 below = child->position - joint.position;
-      between = between || below.norm() < kMinBone ||
-                std::acos(std::clamp(above.normalized().dot(below.normalized()), -1.0, 1.0)) < kStraight;
-    }
-    if (between) joint.role = TemplateRole::kBetween;
-  }
-}
-
 }  // namespace
 
 std::optional<Index> TemplateSkeleton::find(std::string_view joint) const {
@@ -143,7 +121,6 @@ TemplateSkeleton templateFrom(const Skeleton& skeleton, std::string_view name) {
     joint.position = 0.95 * position / height;
     result.joints.push_back(std::move(joint));
   }
-  chooseRoles(result, children);
   addTips(result, children);
   findMirrors(result);
   return result;

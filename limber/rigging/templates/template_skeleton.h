@@ -13,7 +13,7 @@ namespace limber {
 
 // Where a joint's position comes from.
 enum class TemplateRole {
-  kPlaced,   // read off the model
+  kPlaced,   // read off the model, or pinned
   kBetween,  // follows from the placed joints above and below it
   kTip,      // where the last bone of a limb ends; no joint of the result
 };
@@ -46,10 +46,9 @@ std::span<const TemplateSkeleton> templateSkeletons();
 // Throws Error kBadArgument that lists the names there are.
 const TemplateSkeleton& findTemplate(std::string_view name);
 
-// A user's skeleton as a template: positions from its rest pose, in its own orientation (up is +Y, front +Z); joints
-// that part the tree, end it or bend it are placed, the others lie between; every leaf gets a tip, unless it is one by
-// its name ("..._end"). Sides are inferred from names (left and right, .L and .R), and their positions must mirror each
-// other.
+// A user's skeleton as a template: positions from its rest pose, in its own orientation (up is +Y, front +Z); every
+// leaf gets a tip, unless it is one by its name ("..._end"). Sides are inferred from names (left and right, .L and
+// .R), and their positions must mirror each other.
 // Throws Error kBadData naming the joint: as checkSkeleton does; no joint at all; all joints at one height.
 TemplateSkeleton templateFrom(const Skeleton& skeleton, std::string_view name);
 
