@@ -8,8 +8,10 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -21,8 +23,9 @@
 #include "limber/document/scene/geometry.h"
 #include "limber/evaluate/skin/skinned_model.h"
 #include "limber/geometry/mesh/prepare.h"
-#include "limber/reading/shape_weights.h"
-#include "limber/rigging/template_rigger.h"
+#include "limber/rigging/measured_model.h"
+#include "limber/rigging/roles/body_kinds.h"
+#include "limber/rigging/roles/placed_joints.h"
 #include "limber/rigging/templates/humanoid_landmarks.h"
 #include "limber/rigging/templates/joints_between.h"
 
@@ -55,8 +58,9 @@ constexpr std::array<Parameter, 11> kParameters = {{
 
 struct FittedCharacter {
   std::string maker;
-  BodyVolume body;
-  TemplateFit fit;
+  std::shared_ptr<const MeasuredModel> measured;
+  TemplateSkeleton skeleton;
+  std::vector<Vec3> positions;                // as read, before the shape of limbs refines them; body space
   std::vector<std::pair<Index, Vec3>> truth;  // joint of the template, position in body space
 };
 
@@ -69,23 +73,28 @@ FittedCharacter readCharacter(const std::filesystem::path& file) {
   FittedCharacter character;
   const std::string stem = file.stem().string();
   character.maker = stem.substr(0, stem.find('_'));
-  character.body = measureBody(prepared.mesh);
-  character.fit = fitTemplate("humanoid", prepared.mesh, *shapeWeights());
+  character.measured = measureModel(prepared.mesh, {});
+  RoleReading reading = character.measured->reading;
+  if (reading.frame().symmetric()) reading.makeSymmetric();
+  RoledSkeleton made = skeletonOfKind(findBodyKind("humanoid"), reading);
+  character.positions = placedJoints(made, reading, TemplatePins(made.skeleton.joints.size()));
+  character.skeleton = std::move(made.skeleton);
   const std::vector<Affine> globals = restGlobals(skeleton);
   for (const HumanoidJoint& named : humanoidJoints(skeleton)) {
-    const std::optional<Index> joint = character.fit.skeleton.find(named.bone);
+    const std::optional<Index> joint = character.skeleton.find(named.bone);
     if (!joint || named.bone == "upperChest" || named.bone.find("Shoulder") != std::string_view::npos) continue;
     const Vec3 position = prepared.frame.toWorking(globals[named.joint].translation());
-    character.truth.emplace_back(*joint, character.fit.frame.toBody(position));
+    character.truth.emplace_back(*joint, reading.frame().toBody(position));
   }
   return character;
 }
 
 double errorOf(const FittedCharacter& character, const HumanoidProportions& proportions) {
-  const TemplateFit& fit = character.fit;
-  std::vector<Vec3> positions = fit.positions;
-  refineHumanoid(fit.skeleton, character.body, fit.frame, TemplatePins(positions.size()), positions, proportions);
-  placeBetween(fit.skeleton, positions);
+  const MeasuredModel& measured = *character.measured;
+  std::vector<Vec3> positions = character.positions;
+  refineHumanoid(character.skeleton, measured.body, measured.frame(), TemplatePins(positions.size()), positions,
+                 proportions);
+  placeBetween(character.skeleton, positions);
   double sum = 0;
   for (const auto& [joint, position] : character.truth)
     sum += std::min(kMaxError, 100 * (positions[joint] - position).norm());

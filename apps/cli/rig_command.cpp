@@ -18,7 +18,7 @@
 #include "limber/core/text/printable.h"
 #include "limber/document/gltf/json_text.h"
 #include "limber/document/read.h"
-#include "limber/rigging/template_rigger.h"
+#include "limber/rigging/roles/body_kinds.h"
 #include "progress_line.h"
 #include "target_arguments.h"
 
@@ -274,7 +274,7 @@ std::string listNamed(std::string_view title, const Table& table) {
 }
 
 std::string rigHelp() {
-  return listMethods("Riggers", riggerMethods()) + listNamed("Templates", namedTemplates()) +
+  return listMethods("Riggers", riggerMethods()) + listNamed("Templates", bodyKinds()) +
          listMethods("Skinning methods", weightMethods()) + listNamed("Pieces", pieceModes()) +
          TargetArguments::list() +
          "\nPrograms of yours rig (--rigger NAME) and make weights (--skinning NAME), too: docs/adapters.md.\n"

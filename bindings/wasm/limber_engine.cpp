@@ -19,7 +19,7 @@
 #include "limber/document/write.h"
 #include "limber/motion/retarget/retarget_method.h"
 #include "limber/reading/shape_weights.h"
-#include "limber/rigging/template_rigger.h"
+#include "limber/rigging/roles/body_kinds.h"
 #include "limber/samples/motions/sample_motions.h"
 #include "limber/samples/motions/sample_poses.h"
 #include "limber/skeleton/ik/ik_solver.h"
@@ -109,7 +109,7 @@ LIMBER_EXPORT CallResult* limber_methods() {
 // What else a rig is chosen by: templates, how pieces are bound, and what it is made for.
 LIMBER_EXPORT CallResult* limber_rig_choices() {
   return guarded({}, []() -> CallResult {
-    const Json json = {{"template", list(limber::namedTemplates())},
+    const Json json = {{"template", list(limber::bodyKinds())},
                        {"pieces", list(limber::pieceModes())},
                        {"target", list(limber::engineTargets())}};
     return {true, {}, limber::dumpReport(json, -1)};

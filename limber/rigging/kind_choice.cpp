@@ -1,8 +1,7 @@
 #include "limber/rigging/kind_choice.h"
 
 #include <algorithm>
-
-#include "limber/rigging/roles/roled_templates.h"
+#include <span>
 
 namespace limber {
 
@@ -17,25 +16,16 @@ bool hasFingers(const RoleReading& reading) {
   return reading.fingers(Side::kLeft) + reading.fingers(Side::kRight) >= kFingersOfHands;
 }
 
-// What a plan gets where the user leaves the choice.
-std::string kindOfPlan(std::string_view plan, const RoleReading& reading) {
-  if (plan == "upright") return hasFingers(reading) ? "humanoid-fingers" : "humanoid";
-  if (plan == "four") return "quadruped";
-  if (plan == "bird") return "bird";
-  if (plan == "many") return reading.has("midb_upper.L") && reading.has("midb_upper.R") ? "spider" : "insect";
-  for (const BodyKind& kind : bodyKinds()) {
-    if (kind.plan == plan) return std::string(kind.name);
-  }
-  return {};
+// What a plan gets where the user leaves the choice; null where it gets handles.
+const BodyKind* kindOfPlan(std::string_view plan, const RoleReading& reading) {
+  if (plan == "upright" && hasFingers(reading)) return &findBodyKind("humanoid-fingers");
+  if (plan == "many" && reading.has("midb_upper.L") && reading.has("midb_upper.R")) return &findBodyKind("spider");
+  const std::span<const BodyKind> kinds = bodyKinds();
+  const auto first = std::find_if(kinds.begin(), kinds.end(), [&](const BodyKind& kind) { return kind.plan == plan; });
+  return first == kinds.end() ? nullptr : &*first;
 }
 
 }  // namespace
-
-std::string_view planOfKind(std::string_view kind) {
-  if (const BodyKind* adapted = findBodyKind(kind)) return adapted->plan;
-  if (kind == "quadruped") return "four";
-  return kind == "bird" ? "bird" : "upright";
-}
 
 std::optional<std::string_view> planOf(const Anatomy& anatomy) {
   const Index legs = anatomy.pairsOf(PartKind::kLeg);
@@ -46,11 +36,6 @@ std::optional<std::string_view> planOf(const Anatomy& anatomy) {
   if (legs == 1 || hasArms) return "upright";
   if (anatomy.pairsOf(PartKind::kFin) > 0) return "swims";
   return std::nullopt;
-}
-
-RoledSkeleton skeletonNamed(std::string_view kind, const RoleReading& reading) {
-  const BodyKind* adapted = findBodyKind(kind);
-  return adapted ? skeletonOfKind(*adapted, reading) : templateWithRoles(kind, reading);
 }
 
 std::vector<TemplateLimb> limbsOf(const RoledSkeleton& made, const RoleReading& reading) {
@@ -78,9 +63,10 @@ double confidenceOf(double planProbability, const RoledSkeleton& made, const Rol
 std::vector<TemplateMatch> matchesOf(const RoleReading& reading, const ReadingWeights& weights) {
   std::vector<TemplateMatch> matches;
   for (const std::string& plan : weights.plans) {
-    const std::string kind = kindOfPlan(plan, reading);
-    if (kind.empty()) continue;
-    matches.push_back({kind, confidenceOf(reading.probability(plan), skeletonNamed(kind, reading), reading)});
+    const BodyKind* kind = kindOfPlan(plan, reading);
+    if (!kind) continue;
+    const double confidence = confidenceOf(reading.probability(plan), skeletonOfKind(*kind, reading), reading);
+    matches.push_back({std::string(kind->name), confidence});
   }
   std::stable_sort(matches.begin(), matches.end(),
                    [](const TemplateMatch& a, const TemplateMatch& b) { return a.confidence > b.confidence; });

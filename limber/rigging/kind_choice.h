@@ -14,13 +14,8 @@
 
 namespace limber {
 
-// Plans are those of ReadingWeights::plans; kinds the names of namedTemplates().
-std::string_view planOfKind(std::string_view kind);
-// The plan that a user's skeleton has; none where it shows no limbs.
+// The plan (of ReadingWeights::plans) that a user's skeleton has; none where it shows no limbs.
 std::optional<std::string_view> planOf(const Anatomy& anatomy);
-
-// The skeleton of that kind for the body.
-RoledSkeleton skeletonNamed(std::string_view kind, const RoleReading& reading);
 
 // All limbs of the skeleton, with what the reading says of whether the body has them.
 std::vector<TemplateLimb> limbsOf(const RoledSkeleton& made, const RoleReading& reading);

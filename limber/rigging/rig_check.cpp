@@ -16,17 +16,13 @@ namespace {
 // Degrees that arms hang below level, and that legs are off straight down or straight.
 constexpr double kLevel = 22, kLowered = 62, kBentArm = 50, kSpreadLeg = 30, kBentLeg = 35;
 
-RolePosition at(const std::string& role) {
-  return {role, role, 0};
-}
-
 double degreesBetween(const Vec3& a, const Vec3& b) {
   return std::acos(std::clamp(a.normalized().dot(b.normalized()), -1.0, 1.0)) * 180 / kPi;
 }
 
 // Of one side.
 BodyPose poseOf(const RoleReading& reading, const std::string& side) {
-  const auto position = [&](const char* role) { return reading.position(at(role + side)); };
+  const auto position = [&](const char* role) { return reading.position(atRole(role + side)); };
   const Vec3 thigh = position("hind_middle") - position("hind_upper"),
              shin = position("hind_end") - position("hind_middle");
   if (degreesBetween(thigh, -Vec3::UnitY()) > kSpreadLeg || degreesBetween(thigh, shin) > kBentLeg) {
@@ -74,10 +70,10 @@ RigCheck checkRigging(const TriMesh& mesh, const RigOptions& options) {
   const TemplateMatch& likeliest = check.kinds.front();
   check.isSure = likeliest.confidence >= kSureTemplate;
   check.isUpright = measured->frame().axes(1, 1) > std::cos(kPi / 4);
-  const std::string_view plan = planOfKind(likeliest.name);
-  if (reading.probability(plan) < kLikelyTemplate) return check;  // what a thing lacks says nothing
-  const RoledSkeleton made = skeletonNamed(likeliest.name, reading);
-  if (plan == "upright") check.pose = poseOf(reading);
+  const BodyKind& kind = findBodyKind(likeliest.name);
+  if (reading.probability(kind.plan) < kLikelyTemplate) return check;  // what a thing lacks says nothing
+  const RoledSkeleton made = skeletonOfKind(kind, reading);
+  if (kind.plan == "upright") check.pose = poseOf(reading);
   check.missing = missingOf(made, reading);
   check.grownTogether = grownTogether(measured->cleared ? *measured->cleared : surface, reading);
   check.doubts = doubtsOf(made, reading, TemplatePins(made.skeleton.joints.size()));

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "limber/core/known_error.h"
+#include "limber/core/text/names.h"
 #include "limber/geometry/mesh/model_box.h"
 #include "limber/rigging/kind_choice.h"
 #include "limber/rigging/measured_model.h"
@@ -82,7 +83,7 @@ AutoRig withHandles(const TriMesh& mesh, const RigOptions& options, const Templa
 // Brings the likeliest kind that has all joints that are pinned to the front; nothing where none has.
 void chooseKind(std::vector<TemplateMatch>& matches, const RoleReading& reading, const std::vector<JointPin>& pins) {
   const auto chosen = std::find_if(matches.begin(), matches.end(), [&](const TemplateMatch& match) {
-    const RoledSkeleton made = skeletonNamed(match.name, reading);
+    const RoledSkeleton made = skeletonOfKind(findBodyKind(match.name), reading);
     return std::all_of(pins.begin(), pins.end(), [&](const JointPin& pin) { return made.skeleton.find(pin.joint); });
   });
   if (chosen != matches.end()) std::rotate(matches.begin(), chosen, chosen + 1);
@@ -90,33 +91,10 @@ void chooseKind(std::vector<TemplateMatch>& matches, const RoleReading& reading,
 
 }  // namespace
 
-std::vector<NamedTemplate> namedTemplates() {
-  std::vector<NamedTemplate> named;
-  for (const TemplateSkeleton& skeleton : templateSkeletons()) named.push_back({skeleton.name, skeleton.summary});
-  for (const BodyKind& kind : bodyKinds()) named.push_back({kind.name, kind.summary});
-  return named;
-}
-
 void checkTemplateName(std::string_view name) {
-  std::string known = "auto";
-  bool isKnown = name == known;
-  for (const NamedTemplate& named : namedTemplates()) {
-    isKnown = isKnown || named.name == name;
-    known += ", " + std::string(named.name);
-  }
-  if (isKnown) return;
-  throw Error(ErrorCode::kBadArgument, fmt::format("no template is called '{}'", name), {}, "there are: " + known);
-}
-
-TemplateFit fitTemplate(std::string_view name, const TriMesh& mesh, const ReadingWeights& weights) {
-  RigOptions options;
-  options.reading = std::make_shared<const ReadingWeights>(weights);
-  const std::shared_ptr<const MeasuredModel> measured = measureModel(mesh, options);
-  RoleReading reading = measured->reading;
-  if (measured->frame().symmetric()) reading.makeSymmetric();
-  RoledSkeleton made = skeletonNamed(name, reading);
-  std::vector<Vec3> positions = placedJoints(made, reading, TemplatePins(made.skeleton.joints.size()));
-  return {std::move(made.skeleton), measured->frame(), std::move(positions)};
+  std::vector<BodyKind> named = {{"auto", "", ""}};
+  named.insert(named.end(), bodyKinds().begin(), bodyKinds().end());
+  findByName(named, "template", name);
 }
 
 AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress& progress) {
@@ -144,7 +122,7 @@ AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress
   }
   const auto skeletonFor = [&] {
     return options.templateSkeleton ? ownWithRoles(*options.templateSkeleton, options.templateName)
-                                    : skeletonNamed(kind, reading);
+                                    : skeletonOfKind(findBodyKind(kind), reading);
   };
   RoledSkeleton made = skeletonFor();
   TemplatePins pins = pinsIn(made.skeleton, frame, options.pins);
@@ -155,7 +133,7 @@ AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress
   }
   if (frame.symmetric() && pinnedEvenly(made.skeleton, pins)) reading.makeSymmetric();
   const std::optional<std::string_view> plan =
-      options.templateSkeleton ? planOf(readAnatomy(*options.templateSkeleton)) : planOfKind(kind);
+      options.templateSkeleton ? planOf(readAnatomy(*options.templateSkeleton)) : findBodyKind(kind).plan;
   refineRoles(plan.value_or("none"), measured->body, reading);
   const std::vector<Vec3> positions = placedJoints(made, reading, pins);
 

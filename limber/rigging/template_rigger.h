@@ -2,32 +2,12 @@
 #pragma once
 
 #include <string_view>
-#include <vector>
 
-#include "limber/reading/weights_file.h"
 #include "limber/rigging/auto_rigger.h"
-#include "limber/rigging/body/anatomical_frame.h"
-#include "limber/rigging/templates/template_skeleton.h"
 
 namespace limber {
 
-struct TemplateFit {
-  TemplateSkeleton skeleton;
-  AnatomicalFrame frame;
-  std::vector<Vec3> positions;  // body space, #J
-};
-
-// Where the reading has the joints of a template, before the shape of limbs refines it.
-// Throws Error kBadArgument for an unknown template.
-TemplateFit fitTemplate(std::string_view name, const TriMesh& mesh, const ReadingWeights& weights);
-
-struct NamedTemplate {
-  std::string_view name, summary;  // one line for --help
-};
-
-// Skeletons whose joints are given, and kinds of bodies that have as many as the body shows (bodyKinds).
-std::vector<NamedTemplate> namedTemplates();
-// Throws Error kBadArgument that lists the names there are; "auto" is one.
+// Throws Error kBadArgument for what is no name of bodyKinds() and not "auto"; it lists the names there are.
 void checkTemplateName(std::string_view name);
 
 // One reading of the shape (limber/reading) tells how it stands, what kind of body it is and where its joints are; the

@@ -9,6 +9,7 @@
 #include "limber/geometry/mesh/prepare.h"
 #include "limber/rigging/body/testing/capsule_animal.h"
 #include "limber/rigging/body/testing/capsule_person.h"
+#include "limber/rigging/roles/body_kinds.h"
 
 namespace limber {
 
@@ -325,7 +326,7 @@ TEST(TemplateRigger, EveryTemplateFitsEveryBody) {
   for (const TriMesh& mesh : {testing::capsulePerson().mesh, testing::capsuleSpider(3)}) {
     RigOptions options;
     options.memory = std::make_shared<RigMemory>();
-    for (const NamedTemplate& named : namedTemplates()) {
+    for (const BodyKind& named : bodyKinds()) {
       SCOPED_TRACE(named.name);
       checkTemplateName(named.name);
       options.templateName = std::string(named.name);

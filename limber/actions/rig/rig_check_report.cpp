@@ -121,7 +121,7 @@ Warnings adviceOn(const RigCheckReport& report, const RigOptions& options) {
 }  // namespace
 
 std::array<std::string, 2> describeParts(const RigCheck& check, const PartContact& contact) {
-  const std::string_view plan = planOfKind(check.kinds.front().name);
+  const std::string_view plan = findBodyKind(check.kinds.front().name).plan;
   const bool hasArms = plan == "upright" || plan == "dinosaur";
   return {describePart(contact.one, hasArms), describePart(contact.other, hasArms)};
 }

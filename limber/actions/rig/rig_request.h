@@ -14,7 +14,7 @@
 namespace limber {
 
 struct ChosenTemplate {
-  std::string name;                       // auto, or a name of namedTemplates()
+  std::string name;                       // auto, or a name of bodyKinds()
   std::optional<Skeleton> skeleton = {};  // a user's own; the name is then what it is called
 };
 

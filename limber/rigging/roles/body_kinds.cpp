@@ -6,11 +6,18 @@
 
 #include <fmt/format.h>
 
+#include "limber/core/text/names.h"
+#include "limber/rigging/roles/roled_templates.h"
+
 namespace limber {
 
 namespace {
 
 constexpr BodyKind kKinds[] = {
+    {"humanoid", "a person: 22 joints, named as VRM 1.0 does", "upright"},
+    {"humanoid-fingers", "a person with 15 finger joints to each hand", "upright"},
+    {"quadruped", "a four-legged animal with neck and tail", "four"},
+    {"bird", "a bird with wings spread, or another winged biped", "bird"},
     {"dinosaur", "an animal on two legs with a long tail", "dinosaur"},
     {"crawler", "a low animal on four legs, as lizards and tortoises", "four"},
     {"dragon", "a winged animal on four legs", "winged_four"},
@@ -27,7 +34,6 @@ class SkeletonBuilder {
  public:
   SkeletonBuilder(const BodyKind& kind, const RoleReading& reading) : reading_(reading) {
     made_.skeleton.name = std::string(kind.name);
-    made_.skeleton.summary = std::string(kind.summary);
   }
 
   RoledSkeleton build(std::string_view plan) {
@@ -43,8 +49,6 @@ class SkeletonBuilder {
   }
 
  private:
-  static RolePosition at(std::string_view role) { return {std::string(role), std::string(role), 0}; }
-
   Index add(const std::string& name, std::optional<Index> parent, const RolePosition& role, bool isTip = false) {
     TemplateJoint joint;
     joint.name = name;
@@ -59,7 +63,7 @@ class SkeletonBuilder {
 
   // Where the body has the joint; else the parent.
   Index addIfPresent(const std::string& name, Index parent, std::string_view role) {
-    return reading_.has(role) ? add(name, parent, at(role)) : parent;
+    return reading_.has(role) ? add(name, parent, atRole(role)) : parent;
   }
 
   bool hasOnASide(const std::string& role) const { return reading_.has(role + ".L") || reading_.has(role + ".R"); }
@@ -71,14 +75,14 @@ class SkeletonBuilder {
       Index above = parent;
       for (const auto& [name, role] : joints) {
         if (&name != &joints.front().first && !hasOnASide(role)) continue;
-        above = add((right ? "right" : "left") + name, above, at(role + (right ? ".R" : ".L")));
+        above = add((right ? "right" : "left") + name, above, atRole(role + (right ? ".R" : ".L")));
       }
       addTip(above);
     }
   }
 
   Index nearest(const std::string& role, Index one, Index other) const {
-    const Vec3 root = 0.5 * (reading_.position(at(role + ".L")) + reading_.position(at(role + ".R")));
+    const Vec3 root = 0.5 * (reading_.position(atRole(role + ".L")) + reading_.position(atRole(role + ".R")));
     const std::vector<TemplateJoint>& joints = made_.skeleton.joints;
     return (joints[one].position - root).norm() <= (joints[other].position - root).norm() ? one : other;
   }
@@ -113,15 +117,16 @@ class SkeletonBuilder {
     if (plan != "many") return false;
     const auto height = [&](const char* end) {
       return 0.5 *
-             (reading_.position(at(std::string(end) + ".L")) + reading_.position(at(std::string(end) + ".R"))).y();
+             (reading_.position(atRole(std::string(end) + ".L")) + reading_.position(atRole(std::string(end) + ".R")))
+                 .y();
     };
     return height("fore_end") > height("hind_end") + kLiftedHand;
   }
 
   void walk(std::string_view plan) {
-    const Index hips = add("hips", {}, at("trunk_0"));
+    const Index hips = add("hips", {}, atRole("trunk_0"));
     const Index spine = add("spine", hips, {"trunk_1", "trunk_2", 0.5});
-    const Index chest = add("chest", spine, at("trunk_3"));
+    const Index chest = add("chest", spine, atRole("trunk_3"));
     addTip(addIfPresent("head", addIfPresent("neck", chest, "neck"), "head"));
     if (reading_.has("tail_0")) addTail(hips);
     if (hasOnASide("wing_0"))
@@ -139,7 +144,7 @@ class SkeletonBuilder {
 
   void addTail(Index parent) {
     for (std::size_t i = 0; i < 4; ++i) {
-      parent = add(i == 0 ? "tail" : fmt::format("tail{}", i), parent, at(fmt::format("tail_{}", i)));
+      parent = add(i == 0 ? "tail" : fmt::format("tail{}", i), parent, atRole(fmt::format("tail_{}", i)));
     }
     addTip(parent);
   }
@@ -149,9 +154,9 @@ class SkeletonBuilder {
     std::vector<RolePosition> roles;
     for (const char* role :
          {"head", "neck", "trunk_3", "trunk_2", "trunk_1", "trunk_0", "tail_0", "tail_1", "tail_2", "tail_3"}) {
-      if (reading_.has(role)) roles.push_back(at(role));
+      if (reading_.has(role)) roles.push_back(atRole(role));
     }
-    if (roles.size() < 2) roles = {at("trunk_3"), at("trunk_0")};
+    if (roles.size() < 2) roles = {atRole("trunk_3"), atRole("trunk_0")};
     return roles;
   }
 
@@ -215,30 +220,13 @@ std::span<const BodyKind> bodyKinds() {
   return kKinds;
 }
 
-const BodyKind* findBodyKind(std::string_view name) {
-  const auto found =
-      std::find_if(std::begin(kKinds), std::end(kKinds), [&](const BodyKind& k) { return k.name == name; });
-  return found == std::end(kKinds) ? nullptr : &*found;
+const BodyKind& findBodyKind(std::string_view name) {
+  return findByName(kKinds, "template", name);
 }
 
 RoledSkeleton skeletonOfKind(const BodyKind& kind, const RoleReading& reading) {
-  return SkeletonBuilder(kind, reading).build(kind.plan);
-}
-
-std::string partOfRole(std::string_view role) {
-  const bool isSided = role.size() > 2 && role[role.size() - 2] == '.';
-  const std::string side(isSided ? role.substr(role.size() - 2) : std::string_view());
-  const std::string_view stem = role.substr(0, role.size() - side.size());
-  const std::string_view limb = stem.substr(0, stem.find('_')),
-                         joint = stem.substr(std::min(stem.size(), limb.size() + 1));
-  if (limb == "finger") return "fore_end" + side;
-  if (limb.starts_with("mid")) return "mid" + side;
-  if (limb.starts_with("fin")) return "fin" + side;
-  if (limb == "jaw") return "head";
-  if (limb != "fore" && limb != "hind") return std::string(limb) + side;
-  if (joint == "upper") return std::string(limb) + "_upper" + side;
-  if (joint == "middle" || joint == "hock") return std::string(limb) + "_lower" + side;
-  return joint == "base" ? "trunk" : std::string(limb) + "_end" + side;
+  const TemplateSkeleton* skeleton = findTemplate(kind.name);
+  return skeleton ? templateWithRoles(*skeleton, reading) : SkeletonBuilder(kind, reading).build(kind.plan);
 }
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// The kinds of bodies that get a skeleton of their own, and its joints.
+// The kinds of bodies, and the skeleton that each gets.
 #pragma once
 
 #include <optional>
@@ -18,12 +18,10 @@ struct BodyKind {
   std::string_view plan;     // of ReadingWeights::plans
 };
 
-// Those whose joints depend on the body: as many legs, fins and joints of a tail as it has. Joints of all are named by
-// one rule: hips, spine, chest, neck, head and tail along the trunk; per side UpperLeg, LowerLeg, Foot and Toes of one
-// pair of legs, with Front and Hind before them of two, with numbers behind them of more (from the front: none, 1, 2,
-// ...); UpperArm or UpperWing and what is below; Fin.
+// The first one of a plan is the usual one.
 std::span<const BodyKind> bodyKinds();
-const BodyKind* findBodyKind(std::string_view name);  // null where there is none
+// Throws Error kBadArgument that lists the names there are.
+const BodyKind& findBodyKind(std::string_view name);
 
 // A skeleton, and which roles tell where its joints are.
 struct RoledSkeleton {
@@ -31,10 +29,11 @@ struct RoledSkeleton {
   std::vector<std::optional<RolePosition>> roles;  // #J; of tips the role of the joint above
 };
 
-// The kind's skeleton for a body: with the limbs that it has.
+// The kind's skeleton for a body: the template of its name. Where there is none, joints depend on the body: as many
+// legs, fins and joints of a tail as it has. Joints of all these are named by one rule: hips, spine, chest, neck, head
+// and tail along the trunk; per side UpperLeg, LowerLeg, Foot and Toes of one pair of legs, with Front and Hind before
+// them of two, with numbers behind them of more (from the front: none, 1, 2, ...); UpperArm or UpperWing and what is
+// below; Fin.
 RoledSkeleton skeletonOfKind(const BodyKind& kind, const RoleReading& reading);
-
-// The part of the surface (ReadingWeights::parts) that the joint of a role moves.
-std::string partOfRole(std::string_view role);
 
 }  // namespace limber

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "limber/core/error.h"
 #include "limber/reading/shape_weights.h"
 #include "limber/rigging/body/testing/capsule_animal.h"
 
@@ -49,8 +50,10 @@ const std::map<std::string, RoleReading>& readings() {
 
 using Check = std::function<void(const BodyKind&, const RoleReading&, const RoledSkeleton&)>;
 
+// For all whose joints depend on the body.
 void forAllKindsAndBodies(const Check& check) {
   for (const BodyKind& kind : bodyKinds()) {
+    if (findTemplate(kind.name)) continue;
     for (const auto& [body, reading] : readings()) {
       SCOPED_TRACE(std::string(kind.name) + " in a " + body);
       check(kind, reading, skeletonOfKind(kind, reading));
@@ -95,12 +98,12 @@ TEST(BodyKinds, AreFoundByTheirNames) {
   std::set<std::string_view> names;
   for (const BodyKind& kind : bodyKinds()) {
     EXPECT_TRUE(names.insert(kind.name).second) << kind.name;
-    EXPECT_EQ(findBodyKind(kind.name), &kind);
+    EXPECT_EQ(&findBodyKind(kind.name), &kind);
     EXPECT_FALSE(kind.summary.empty());
     EXPECT_NE(std::find(weights().plans.begin(), weights().plans.end(), kind.plan), weights().plans.end()) << kind.plan;
-    for (const TemplateSkeleton& other : templateSkeletons()) EXPECT_NE(other.name, kind.name);
   }
-  EXPECT_FALSE(findBodyKind("centaur"));
+  for (const TemplateSkeleton& skeleton : templateSkeletons()) EXPECT_TRUE(names.contains(skeleton.name));
+  EXPECT_THROW(findBodyKind("centaur"), Error);
 }
 
 TEST(BodyKinds, SkeletonsAreSound) {
@@ -186,7 +189,7 @@ TEST(BodyKinds, NameTheJointsOfALimb) {
   }
   known["tail_0"] = Vec3(0, 0.7, -0.4);
   const RoleReading reading = readingOf(testing::capsuleTheropod(), known);
-  const RoledSkeleton made = skeletonOfKind(*findBodyKind("dinosaur"), reading);
+  const RoledSkeleton made = skeletonOfKind(findBodyKind("dinosaur"), reading);
   EXPECT_EQ(roleOf(made, "hips"), "trunk_0");
   EXPECT_EQ(roleOf(made, "chest"), "trunk_3");
   EXPECT_EQ(parentOf(made, "chest"), "spine");
@@ -208,7 +211,7 @@ TEST(BodyKinds, NameTheJointsOfALimb) {
 
 TEST(BodyKinds, ALimbOnOneSideIsOnBoth) {
   const RoleReading reading = readingOf(testing::capsuleSpider(3), {{"mida_upper.R", Vec3(-0.1, 0.5, 0)}});
-  const RoledSkeleton made = skeletonOfKind(*findBodyKind("insect"), reading);
+  const RoledSkeleton made = skeletonOfKind(findBodyKind("insect"), reading);
   const auto roles = [&](const std::string& role) {
     return std::count_if(made.roles.begin(), made.roles.end(), [&](const auto& r) { return r && r->from == role; });
   };
@@ -219,7 +222,7 @@ TEST(BodyKinds, ALimbOnOneSideIsOnBoth) {
 TEST(BodyKinds, SerpentsAreChains) {
   for (const auto& [body, reading] : readings()) {
     SCOPED_TRACE(body);
-    const RoledSkeleton made = skeletonOfKind(*findBodyKind("serpent"), reading);
+    const RoledSkeleton made = skeletonOfKind(findBodyKind("serpent"), reading);
     std::size_t joints = 0;
     for (const TemplateJoint& joint : made.skeleton.joints) joints += joint.role == TemplateRole::kTip ? 0 : 1;
     EXPECT_EQ(joints, 12u);
@@ -234,7 +237,7 @@ TEST(BodyKinds, SerpentsAreChains) {
 TEST(BodyKinds, FishHaveTheFinsThatTheBodyHas) {
   for (const auto& [body, reading] : readings()) {
     SCOPED_TRACE(body);
-    const RoledSkeleton made = skeletonOfKind(*findBodyKind("fish"), reading);
+    const RoledSkeleton made = skeletonOfKind(findBodyKind("fish"), reading);
     EXPECT_EQ(parentOf(made, "spine"), "chest");
     EXPECT_EQ(parentOf(made, "tail"), "spine");
     EXPECT_EQ(parentOf(made, "tail2"), "tail1");
@@ -242,30 +245,7 @@ TEST(BodyKinds, FishHaveTheFinsThatTheBodyHas) {
     EXPECT_EQ(made.skeleton.find("rightFin1").has_value(), hasOnASide(reading, "fin1_0"));
   }
   const RoleReading finned = readingOf(testing::capsuleFish(), {{"fin0_0.L", Vec3(0.2, 0.5, 0.5)}});
-  EXPECT_EQ(roleOf(skeletonOfKind(*findBodyKind("fish"), finned), "rightFin"), "fin0_0.R");
-}
-
-TEST(PartOfRole, IsThePartThatTheJointMoves) {
-  const std::map<std::string, std::string> expected = {{"trunk_2", "trunk"},
-                                                       {"head", "head"},
-                                                       {"jaw", "head"},
-                                                       {"tail_3", "tail"},
-                                                       {"fore_base.L", "trunk"},
-                                                       {"fore_upper.R", "fore_upper.R"},
-                                                       {"fore_middle.L", "fore_lower.L"},
-                                                       {"fore_end.R", "fore_end.R"},
-                                                       {"finger_2_1.L", "fore_end.L"},
-                                                       {"hind_hock.R", "hind_lower.R"},
-                                                       {"hind_toes.L", "hind_end.L"},
-                                                       {"midb_middle.R", "mid.R"},
-                                                       {"wing_1.L", "wing.L"},
-                                                       {"fin0_1.R", "fin.R"},
-                                                       {"ear.L", "ear.L"}};
-  for (const auto& [role, part] : expected) EXPECT_EQ(partOfRole(role), part) << role;
-  for (const std::string& role : weights().roles) {
-    const std::string part = partOfRole(role);
-    EXPECT_NE(std::find(weights().parts.begin(), weights().parts.end(), part), weights().parts.end()) << role << part;
-  }
+  EXPECT_EQ(roleOf(skeletonOfKind(findBodyKind("fish"), finned), "rightFin"), "fin0_0.R");
 }
 
 }  // namespace limber

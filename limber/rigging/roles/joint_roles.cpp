@@ -69,7 +69,7 @@ class RoleFinder {
     }
   }
 
-  void set(Index joint, const std::string& role) { roles_[joint] = {role, role, 0}; }
+  void set(Index joint, const std::string& role) { roles_[joint] = atRole(role); }
 
   // Path lengths along a chain, 1 at its end.
   std::vector<double> along(std::span<const Index> chain) const {
@@ -94,8 +94,8 @@ class RoleFinder {
   }
 
   static RolePosition between(const std::string& from, const std::string& to, double fraction) {
-    if (fraction < 1e-6) return {from, from, 0};
-    if (fraction > 1 - 1e-6) return {to, to, 0};
+    if (fraction < 1e-6) return atRole(from);
+    if (fraction > 1 - 1e-6) return atRole(to);
     return {from, to, fraction};
   }
 
@@ -179,6 +179,36 @@ class RoleFinder {
 };
 
 }  // namespace
+
+RolePosition atRole(std::string_view role) {
+  return {std::string(role), std::string(role), 0};
+}
+
+RoleName splitName(std::string_view name) {
+  RoleName split;
+  if (name.ends_with(".L") || name.ends_with(".R")) {
+    split.side = name.substr(name.size() - 2);
+    name.remove_suffix(2);
+  }
+  const std::size_t end = name.find('_');
+  split.limb = name.substr(0, end);
+  if (end != std::string_view::npos) split.segment = name.substr(end + 1);
+  return split;
+}
+
+std::string partOfRole(std::string_view role) {
+  const RoleName name = splitName(role);
+  const auto part = [&](std::string_view of) { return std::string(of) + std::string(name.side); };
+  const std::string limb(name.limb);
+  if (limb == "finger") return part("fore_end");
+  if (limb.starts_with("mid")) return part("mid");
+  if (limb.starts_with("fin")) return part("fin");
+  if (limb == "jaw") return "head";
+  if (limb != "fore" && limb != "hind") return part(limb);
+  if (name.segment == "upper") return part(limb + "_upper");
+  if (name.segment == "middle" || name.segment == "hock") return part(limb + "_lower");
+  return name.segment == "base" ? "trunk" : part(limb + "_end");
+}
 
 std::vector<std::optional<RolePosition>> jointRoles(const Skeleton& skeleton, const Anatomy& anatomy) {
   return RoleFinder(skeleton, anatomy).find();

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "limber/character/anatomy/anatomy.h"
@@ -17,6 +18,16 @@ struct RolePosition {
 
   bool isRole() const { return from == to; }
 };
+RolePosition atRole(std::string_view role);
+
+// "fore_upper.L", of ReadingWeights::roles or parts. All but the limb may be empty.
+struct RoleName {
+  std::string_view limb, segment, side;  // "fore", "upper", ".L"
+};
+RoleName splitName(std::string_view name);
+
+// The part of the surface (ReadingWeights::parts) that the joint of a role moves.
+std::string partOfRole(std::string_view role);
 
 // By the anatomy's parts: landmarks of legs and arms are roles; joints of the trunk, of tails and wings lie along the
 // roles of theirs as far as along their chain at rest; further joints of limbs and necks lie between those around them.

@@ -1,11 +1,14 @@
 #include "limber/rigging/roles/joint_roles.h"
 
+#include <algorithm>
 #include <array>
 #include <map>
 
 #include <gtest/gtest.h>
 
 #include "limber/character/anatomy/testing/bodies.h"
+#include "limber/reading/shape_weights.h"
+#include "limber/reading/weights_file.h"
 
 namespace limber {
 
@@ -246,6 +249,30 @@ TEST_F(JointRoles, FractionsAreFinite) {
     if (!role) continue;
     EXPECT_GE(role->fraction, 0);
     EXPECT_LE(role->fraction, 1);
+  }
+}
+
+TEST(PartOfRole, IsThePartThatTheJointMoves) {
+  const std::map<std::string, std::string> expected = {{"trunk_2", "trunk"},
+                                                       {"head", "head"},
+                                                       {"jaw", "head"},
+                                                       {"tail_3", "tail"},
+                                                       {"fore_base.L", "trunk"},
+                                                       {"fore_upper.R", "fore_upper.R"},
+                                                       {"fore_middle.L", "fore_lower.L"},
+                                                       {"fore_end.R", "fore_end.R"},
+                                                       {"finger_2_1.L", "fore_end.L"},
+                                                       {"hind_hock.R", "hind_lower.R"},
+                                                       {"hind_toes.L", "hind_end.L"},
+                                                       {"midb_middle.R", "mid.R"},
+                                                       {"wing_1.L", "wing.L"},
+                                                       {"fin0_1.R", "fin.R"},
+                                                       {"ear.L", "ear.L"}};
+  for (const auto& [role, part] : expected) EXPECT_EQ(partOfRole(role), part) << role;
+  const std::shared_ptr<const ReadingWeights> weights = shapeWeights();
+  for (const std::string& role : weights->roles) {
+    const std::string part = partOfRole(role);
+    EXPECT_NE(std::find(weights->parts.begin(), weights->parts.end(), part), weights->parts.end()) << role << part;
   }
 }
 

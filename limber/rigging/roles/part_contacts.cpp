@@ -49,34 +49,18 @@ std::vector<std::optional<std::size_t>> nearestSamples(const TriMesh& mesh, std:
   return nearest;
 }
 
-struct PartName {
-  std::string_view limb, segment, side;  // "fore", "upper", ".L"; all but the first may be empty
-};
-
-PartName parsed(std::string_view part) {
-  PartName name;
-  if (part.ends_with(".L") || part.ends_with(".R")) {
-    name.side = part.substr(part.size() - 2);
-    part.remove_suffix(2);
-  }
-  const std::size_t end = part.find('_');
-  name.limb = part.substr(0, end);
-  if (end != std::string_view::npos) name.segment = part.substr(end + 1);
-  return name;
-}
-
 bool isAnyPart(std::string_view limb) {
   return limb == "other" || limb == "prop" || limb == "ear" || limb == "wing" || limb == "fin" || limb == "mid";
 }
 
 // Whether bodies have these next to each other.
 bool areNeighbours(std::string_view onePart, std::string_view otherPart) {
-  const PartName one = parsed(onePart), other = parsed(otherPart);
+  const RoleName one = splitName(onePart), other = splitName(otherPart);
   if (isAnyPart(one.limb) || isAnyPart(other.limb)) return true;
   if (one.limb == other.limb && one.side == other.side) {
     return (one.segment == "lower") != (other.segment == "lower") || one.segment == other.segment;
   }
-  const auto isTrunk = [](const PartName& part) {
+  const auto isTrunk = [](const RoleName& part) {
     return part.limb == "trunk" || part.limb == "neck" || part.limb == "head" || part.limb == "tail";
   };
   if (isTrunk(one) && isTrunk(other)) return true;

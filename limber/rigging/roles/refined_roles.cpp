@@ -26,7 +26,7 @@ void moveFingers(const std::string& side, const Vec3& displacement, RoleReading&
 
 void refineRoles(std::string_view plan, const BodyVolume& body, RoleReading& reading) {
   if (plan != "upright" && plan != "four") return;
-  RoledSkeleton made = templateWithRoles(plan == "four" ? "quadruped" : "humanoid", reading);
+  RoledSkeleton made = templateWithRoles(*findTemplate(plan == "four" ? "quadruped" : "humanoid"), reading);
   const std::vector<TemplateJoint>& joints = made.skeleton.joints;
   TemplatePins pins(joints.size());
   for (std::size_t j = 0; j < joints.size(); ++j) {

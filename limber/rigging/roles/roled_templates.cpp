@@ -25,9 +25,9 @@ void raiseHeels(RoledSkeleton& made) {
     if (!role || !role->isRole()) continue;
     const std::string side = role->from.substr(role->from.size() - 2);
     if (role->from == "hind_end" + side) {
-      role = {"hind_hock" + side, "hind_hock" + side, 0};
+      role = atRole("hind_hock" + side);
     } else if (role->from == "hind_toes" + side) {
-      role = {"hind_end" + side, "hind_end" + side, 0};
+      role = atRole("hind_end" + side);
     }
   }
 }
@@ -48,8 +48,7 @@ RoledSkeleton withRoles(TemplateSkeleton skeleton, std::vector<std::optional<Rol
   return made;
 }
 
-RoledSkeleton templateWithRoles(std::string_view name, const RoleReading& reading) {
-  const TemplateSkeleton& skeleton = findTemplate(name);
+RoledSkeleton templateWithRoles(const TemplateSkeleton& skeleton, const RoleReading& reading) {
   std::vector<Vec3> positions;
   for (const TemplateJoint& joint : skeleton.joints) positions.push_back(joint.position);
   const Skeleton rest = standingSkeleton(skeleton, positions, {});

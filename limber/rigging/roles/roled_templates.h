@@ -15,10 +15,9 @@ namespace limber {
 // roles  of the skeleton's joints, where its last are tips without those; tips have the role of the joint above
 RoledSkeleton withRoles(TemplateSkeleton skeleton, std::vector<std::optional<RolePosition>> roles);
 
-// One of templateSkeletons(). Where the reading has raised heels, as animals on two legs have them, the feet of a
-// person are there, and the toes where the legs come to the ground.
-// Throws Error kBadArgument for a name that there is not.
-RoledSkeleton templateWithRoles(std::string_view name, const RoleReading& reading);
+// Of templateSkeletons(). Where the reading has raised heels, as animals on two legs have them, the feet of a person
+// are there, and the toes where the legs come to the ground.
+RoledSkeleton templateWithRoles(const TemplateSkeleton& skeleton, const RoleReading& reading);
 
 // A user's skeleton, whatever its rest pose and orientation. Throws Error as templateFrom does.
 RoledSkeleton ownWithRoles(const Skeleton& skeleton, std::string_view name);

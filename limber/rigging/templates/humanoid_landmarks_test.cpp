@@ -11,7 +11,7 @@ using testing::measuredPerson;
 
 TEST(HumanoidLandmarks, HipsGoWhereLegsPart) {
   const MeasuredPerson& person = measuredPerson();
-  const TemplateSkeleton& skeleton = findTemplate("humanoid");
+  const TemplateSkeleton& skeleton = *findTemplate("humanoid");
   const Index hip = *skeleton.find("leftUpperLeg"), knee = *skeleton.find("leftLowerLeg");
   std::vector<Vec3> positions;
   for (const TemplateJoint& joint : skeleton.joints) positions.push_back(joint.position);
@@ -34,7 +34,7 @@ TEST(HumanoidLandmarks, LegsThatNeverMeetHaveTheirHipsInTheirMiddle) {
   for (const double x : {0.11, -0.11}) testing::addCapsule(robot, {x, 0.045, 0}, {x, 0.52, 0}, 0.045);
   const BodyVolume body = measureBody(robot);
   const AnatomicalFrame frame = frameAlong(robot, body, Vec3::UnitY(), Vec3::UnitZ());
-  const TemplateSkeleton& skeleton = findTemplate("humanoid");
+  const TemplateSkeleton& skeleton = *findTemplate("humanoid");
   const Index hip = *skeleton.find("leftUpperLeg"), other = *skeleton.find("rightUpperLeg");
   std::vector<Vec3> positions;
   for (const TemplateJoint& joint : skeleton.joints) positions.push_back(joint.position);
@@ -46,7 +46,7 @@ TEST(HumanoidLandmarks, LegsThatNeverMeetHaveTheirHipsInTheirMiddle) {
 
 TEST(HumanoidLandmarks, ArmsGoWhereTheyLeaveTheTrunk) {
   const MeasuredPerson& person = measuredPerson();
-  const TemplateSkeleton& skeleton = findTemplate("humanoid");
+  const TemplateSkeleton& skeleton = *findTemplate("humanoid");
   const Index shoulder = *skeleton.find("leftUpperArm"), elbow = *skeleton.find("leftLowerArm"),
               hand = *skeleton.find("leftHand");
   const Vec3 shoulderThere = person.frame.toBody(person.shape.shoulder);
@@ -70,7 +70,7 @@ TEST(HumanoidLandmarks, ShouldersStayAboveArmsThatHang) {
   const testing::CapsulePerson person = testing::capsulePerson(1.3);
   const BodyVolume body = measureBody(person.mesh);
   const AnatomicalFrame frame = frameAlong(person.mesh, body, Vec3::UnitY(), Vec3::UnitZ());
-  const TemplateSkeleton& skeleton = findTemplate("humanoid");
+  const TemplateSkeleton& skeleton = *findTemplate("humanoid");
   const Index shoulder = *skeleton.find("leftUpperArm");
   std::vector<Vec3> positions;
   for (const TemplateJoint& joint : skeleton.joints) positions.push_back(joint.position);
@@ -86,7 +86,7 @@ TEST(HumanoidLandmarks, ShouldersStayAboveArmsThatHang) {
 
 TEST(HumanoidLandmarks, AShorterArmIsAsLongAsTheOther) {
   const MeasuredPerson& person = measuredPerson();
-  const TemplateSkeleton& skeleton = findTemplate("humanoid");
+  const TemplateSkeleton& skeleton = *findTemplate("humanoid");
   const Index hand = *skeleton.find("leftHand"), other = *skeleton.find("rightHand");
   std::vector<Vec3> positions;
   for (const TemplateJoint& joint : skeleton.joints) positions.push_back(joint.position);
@@ -107,7 +107,7 @@ TEST(HumanoidLandmarks, AShorterArmIsAsLongAsTheOther) {
 
 TEST(HumanoidLandmarks, KneesAreBeforeTheMiddleOfTheLegAndTheChestBehindIts) {
   const MeasuredPerson& person = measuredPerson();
-  const TemplateSkeleton& skeleton = findTemplate("humanoid");
+  const TemplateSkeleton& skeleton = *findTemplate("humanoid");
   const Index knee = *skeleton.find("leftLowerLeg"), chest = *skeleton.find("upperChest");
   std::vector<Vec3> positions;
   for (const TemplateJoint& joint : skeleton.joints) positions.push_back(joint.position);
@@ -124,7 +124,7 @@ TEST(HumanoidLandmarks, KneesAreBeforeTheMiddleOfTheLegAndTheChestBehindIts) {
 
 TEST(HumanoidLandmarks, LeavesOtherTemplatesAlone) {
   const MeasuredPerson& person = measuredPerson();
-  const TemplateSkeleton& skeleton = findTemplate("quadruped");
+  const TemplateSkeleton& skeleton = *findTemplate("quadruped");
   std::vector<Vec3> positions;
   for (const TemplateJoint& joint : skeleton.joints) positions.push_back(joint.position);
   std::vector<Vec3> refined = positions;

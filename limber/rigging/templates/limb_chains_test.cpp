@@ -24,7 +24,7 @@ TEST(LimbChains, HoldEachJointOnce) {
 }
 
 TEST(LimbChains, MissingOnesAreNamedByTheirEnds) {
-  const TemplateSkeleton& person = findTemplate("humanoid");
+  const TemplateSkeleton& person = *findTemplate("humanoid");
   std::vector<TemplateLimb> limbs = limbChains(person);
   EXPECT_EQ(missingLimbs(person, limbs), "");
   for (TemplateLimb& limb : limbs) limb.isThere = person.joints[limb.joints.front()].name != "leftUpperLeg";

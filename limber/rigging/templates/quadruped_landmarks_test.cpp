@@ -26,7 +26,7 @@ struct MeasuredHorse {
     }
     body = measureBody(mesh);
     frame = frameAlong(mesh, body, Vec3::UnitY(), Vec3::UnitZ());
-    for (const TemplateJoint& joint : findTemplate("quadruped").joints) {
+    for (const TemplateJoint& joint : findTemplate("quadruped")->joints) {
       Vec3 position = joint.position;
       if (joint.mirror) {  // beside the legs, but in their reach
         position.x() = joint.position.x() > 0 ? 0.1 : -0.1;
@@ -46,7 +46,7 @@ const MeasuredHorse& theHorse() {
 
 TEST(QuadrupedLandmarks, LegsStandUnderTheTrunkTheyCarry) {
   const MeasuredHorse& horse = theHorse();
-  const TemplateSkeleton& skeleton = findTemplate("quadruped");
+  const TemplateSkeleton& skeleton = *findTemplate("quadruped");
   std::vector<Vec3> positions = horse.positions;
   refineQuadruped(skeleton, horse.body, horse.frame, std::vector<std::optional<Vec3>>(positions.size()), positions);
   const auto positionOf = [&](const char* name) { return horse.frame.fromBody(positions[*skeleton.find(name)]); };
@@ -79,7 +79,7 @@ TEST(QuadrupedLandmarks, LegsStandUnderTheTrunkTheyCarry) {
 TEST(QuadrupedLandmarks, TheTailIsFollowedToItsEnd) {
   for (const Vec3& end : {Vec3(0, 0.4, -0.75), Vec3(0, 1.1, -0.65)}) {
     const MeasuredHorse horse(end);
-    const TemplateSkeleton& skeleton = findTemplate("quadruped");
+    const TemplateSkeleton& skeleton = *findTemplate("quadruped");
     std::vector<Vec3> positions = horse.positions;
     refineQuadruped(skeleton, horse.body, horse.frame, std::vector<std::optional<Vec3>>(positions.size()), positions);
     const auto positionOf = [&](const char* name) { return horse.frame.fromBody(positions[*skeleton.find(name)]); };
@@ -95,7 +95,7 @@ TEST(QuadrupedLandmarks, TheTailIsFollowedToItsEnd) {
 
 TEST(QuadrupedLandmarks, PinsStay) {
   const MeasuredHorse& horse = theHorse();
-  const TemplateSkeleton& skeleton = findTemplate("quadruped");
+  const TemplateSkeleton& skeleton = *findTemplate("quadruped");
   const Index knee = *skeleton.find("leftHindLowerLeg");
   std::vector<std::optional<Vec3>> pins(horse.positions.size());
   std::vector<Vec3> positions = horse.positions;
@@ -106,7 +106,7 @@ TEST(QuadrupedLandmarks, PinsStay) {
 
 TEST(QuadrupedLandmarks, LeavesOtherTemplatesAlone) {
   const testing::MeasuredPerson& person = testing::measuredPerson();
-  const TemplateSkeleton& skeleton = findTemplate("humanoid");
+  const TemplateSkeleton& skeleton = *findTemplate("humanoid");
   std::vector<Vec3> positions;
   for (const TemplateJoint& joint : skeleton.joints) positions.push_back(joint.position);
   std::vector<Vec3> refined = positions;

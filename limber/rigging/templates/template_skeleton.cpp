@@ -110,7 +110,6 @@ TemplateSkeleton templateFrom(const Skeleton& skeleton, std::string_view name) {
   }
   TemplateSkeleton result;
   result.name = std::string(name);
-  result.summary = "a user's skeleton";
   std::vector<Index> children(skeleton.jointCount(), 0);
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
     TemplateJoint joint;

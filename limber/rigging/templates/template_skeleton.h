@@ -28,7 +28,6 @@ struct TemplateJoint {
 
 struct TemplateSkeleton {
   std::string name;
-  std::string summary;  // one line for --help
   std::vector<TemplateJoint> joints;
 
   Index jointCount() const { return static_cast<Index>(joints.size()); }
@@ -43,8 +42,7 @@ bool pinnedEvenly(const TemplateSkeleton& skeleton, const TemplatePins& pins);
 
 // The templates that limber knows: humanoid, humanoid-fingers, quadruped, bird.
 std::span<const TemplateSkeleton> templateSkeletons();
-// Throws Error kBadArgument that lists the names there are.
-const TemplateSkeleton& findTemplate(std::string_view name);
+const TemplateSkeleton* findTemplate(std::string_view name);  // null where there is none
 
 // A user's skeleton as a template: positions from its rest pose, in its own orientation (up is +Y, front +Z); every
 // leaf gets a tip, unless it is one by its name ("..._end"). Sides are inferred from names (left and right, .L and

@@ -3,9 +3,6 @@
 #include <array>
 #include <utility>
 
-#include <fmt/format.h>
-
-#include "limber/core/error.h"
 #include "limber/rigging/templates/template_skeleton.h"
 
 namespace limber {
@@ -122,9 +119,8 @@ void addRow(TemplateSkeleton& skeleton, const Row& row, bool right) {
   skeleton.joints.push_back(std::move(joint));
 }
 
-TemplateSkeleton made(std::string_view name, std::string_view summary, std::span<const Row> rows,
-                      std::span<const Row> more = {}) {
-  TemplateSkeleton skeleton{std::string(name), std::string(summary), {}};
+TemplateSkeleton made(std::string_view name, std::span<const Row> rows, std::span<const Row> more = {}) {
+  TemplateSkeleton skeleton{std::string(name), {}};
   std::vector<Row> all(rows.begin(), rows.end());
   all.insert(all.end(), more.begin(), more.end());
   for (const Row& row : all) {
@@ -147,21 +143,19 @@ TemplateSkeleton made(std::string_view name, std::string_view summary, std::span
 
 std::span<const TemplateSkeleton> templateSkeletons() {
   static const std::array<TemplateSkeleton, 4> kTemplates = {
-      made("humanoid", "a person: 22 joints, named as VRM 1.0 does", kHumanoid),
-      made("humanoid-fingers", "a person with 15 finger joints to each hand", kHumanoid, kHandFingers),
-      made("quadruped", "a four-legged animal with neck and tail", kQuadruped),
-      made("bird", "a bird with wings spread, or another winged biped", kBird),
+      made("humanoid", kHumanoid),
+      made("humanoid-fingers", kHumanoid, kHandFingers),
+      made("quadruped", kQuadruped),
+      made("bird", kBird),
   };
   return kTemplates;
 }
 
-const TemplateSkeleton& findTemplate(std::string_view name) {
-  std::string known;
+const TemplateSkeleton* findTemplate(std::string_view name) {
   for (const TemplateSkeleton& skeleton : templateSkeletons()) {
-    if (skeleton.name == name) return skeleton;
-    known += (known.empty() ? "" : ", ") + skeleton.name;
+    if (skeleton.name == name) return &skeleton;
   }
-  throw Error(ErrorCode::kBadArgument, fmt::format("no template is called '{}'", name), {}, "there are: " + known);
+  return nullptr;
 }
 
 }  // namespace limber
