@@ -76,11 +76,4 @@ std::vector<Index> JointTree::pathBelow(Index above, Index joint) const {
   return path;
 }
 
-std::optional<Index> JointTree::childTowards(Index above, Index joint) const {
-  for (const Index child : children(above)) {
-    if (isAboveOrSelf(child, joint)) return child;
-  }
-  return std::nullopt;
-}
-
 }  // namespace limber

@@ -34,8 +34,6 @@ class JointTree {
   std::optional<Index> meeting(Index one, Index other) const;
   // The joints below `above` down to `joint`, `joint` included; empty where it is `above` or does not hang on it.
   std::vector<Index> pathBelow(Index above, Index joint) const;
-  // The child of `above` on the path down to `joint`.
-  std::optional<Index> childTowards(Index above, Index joint) const;
 
  private:
   std::vector<std::optional<Index>> parents_;  // #J

@@ -65,9 +65,6 @@ TEST(JointTree, PathsLeadDown) {
   EXPECT_THAT(tree.pathBelow(3, 3), IsEmpty());
   EXPECT_THAT(tree.pathBelow(4, 3), IsEmpty());
   EXPECT_THAT(tree.pathBelow(5, 3), IsEmpty());
-  EXPECT_EQ(tree.childTowards(0, 3), Index{1});
-  EXPECT_FALSE(tree.childTowards(3, 3));
-  EXPECT_FALSE(tree.childTowards(5, 3));
 }
 
 TEST(JointTree, CyclesAndMissingParentsAreRefused) {

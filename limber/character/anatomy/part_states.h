@@ -45,28 +45,4 @@ constexpr PartKind kindOf(PartState state) {
   return kKinds[static_cast<std::size_t>(state)];
 }
 
-// kWhole of what is told apart by its kind alone.
-constexpr Segment segmentOf(PartState state) {
-  switch (state) {
-    case PartState::kLegBase:
-    case PartState::kArmBase:
-      return Segment::kBase;
-    case PartState::kLegUpper:
-    case PartState::kArmUpper:
-      return Segment::kUpper;
-    case PartState::kLegMiddle:
-    case PartState::kArmMiddle:
-      return Segment::kMiddle;
-    case PartState::kLegHock:
-      return Segment::kHock;
-    case PartState::kLegEnd:
-    case PartState::kArmEnd:
-      return Segment::kEnd;
-    case PartState::kLegToes:
-      return Segment::kToes;
-    default:
-      return Segment::kWhole;
-  }
-}
-
 }  // namespace limber

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
 #include <vector>
 
 #include "limber/geometry/mesh/tri_mesh.h"
@@ -37,10 +36,6 @@ class SignedDistance {
     const double value = between(inside);
     return inside == scaled ? value : value + spacing_ * (scaled - inside).norm();
   }
-  // at() of N positions at once, x, y and z in separate arrays, in single precision: several times as fast as one by
-  // one. Beyond the grid it is the value at the grid's border.
-  template <std::size_t N>
-  std::array<float, N> atEach(const std::array<std::array<float, N>, 3>& positions) const;
 
  private:
   void refine(const Bvh& surface, const WindingNumber& winding);
@@ -70,47 +65,6 @@ class SignedDistance {
   Vec3 last_ = Vec3::Zero();  // node along each axis
   std::vector<float> values_;
 };
-
-// Loops of one kind of work each, which compilers turn into vector instructions; those give the same on every machine.
-template <std::size_t N>
-std::array<float, N> SignedDistance::atEach(const std::array<std::array<float, N>, 3>& positions) const {
-  std::array<std::array<std::int32_t, N>, 3> low;
-  std::array<std::array<float, N>, 3> part;
-  for (int axis = 0; axis < 3; ++axis) {
-    const float origin = static_cast<float>(origin_[axis]), per = static_cast<float>(perSpacing_);
-    // Just before the last node: cells do not hold their far ones.
-    const float last = static_cast<float>(last_[axis] * (1 - 1e-6));
-    for (std::size_t i = 0; i < N; ++i) {
-      float scaled = (positions[axis][i] - origin) * per;
-      scaled = scaled > 0 ? scaled : 0;
-      scaled = scaled < last ? scaled : last;
-      low[axis][i] = static_cast<std::int32_t>(scaled);
-      part[axis][i] = scaled - static_cast<float>(low[axis][i]);
-    }
-  }
-  const std::size_t row = size_[0], slice = row * size_[1];
-  std::array<std::array<float, N>, 8> corner;
-  for (std::size_t i = 0; i < N; ++i) {
-    const float* at = &values_[low[0][i] + row * low[1][i] + slice * low[2][i]];
-    corner[0][i] = at[0];
-    corner[1][i] = at[1];
-    corner[2][i] = at[row];
-    corner[3][i] = at[row + 1];
-    corner[4][i] = at[slice];
-    corner[5][i] = at[slice + 1];
-    corner[6][i] = at[slice + row];
-    corner[7][i] = at[slice + row + 1];
-  }
-  std::array<float, N> distances;
-  for (std::size_t i = 0; i < N; ++i) {
-    const auto mix = [](float a, float b, float fraction) { return a + fraction * (b - a); };
-    const float x = part[0][i], y = part[1][i];
-    const float near = mix(mix(corner[0][i], corner[1][i], x), mix(corner[2][i], corner[3][i], x), y);
-    const float far = mix(mix(corner[4][i], corner[5][i], x), mix(corner[6][i], corner[7][i], x), y);
-    distances[i] = mix(near, far, part[2][i]);
-  }
-  return distances;
-}
 
 // Cells along the longest side of modelBox for a grid of about so many nodes in it: more where it is little of a cube;
 // between `least` and `most`.

@@ -6,7 +6,6 @@
 
 #include "limber/core/error.h"
 #include "limber/core/parallel.h"
-#include "limber/core/random.h"
 #include "limber/geometry/mesh/bvh.h"
 #include "limber/geometry/mesh/testing/shapes.h"
 #include "limber/geometry/mesh/winding_number.h"
@@ -52,23 +51,6 @@ TEST(SignedDistance, IsTheTreesAnswerNearTheSurface) {
         EXPECT_EQ(distance.value(node) < 0, turns > 0.5);
       }
     }
-  }
-}
-
-TEST(SignedDistance, OfManyPlacesIsThatOfEach) {
-  const TriMesh mesh = testing::icosphere(3);
-  const SignedDistance distance = distancesOf(mesh, 24);
-  Random random;
-  constexpr std::size_t kSampleCount = 200;
-  std::array<std::array<float, kSampleCount>, 3> positions;
-  for (std::size_t i = 0; i < kSampleCount; ++i) {
-    for (int axis = 0; axis < 3; ++axis) positions[axis][i] = static_cast<float>(random.uniform(-1, 1));
-  }
-  const Vec3 first = distance.position(0), last = distance.position(distance.nodeCount() - 1);
-  const std::array<float, kSampleCount> many = distance.atEach(positions);
-  for (std::size_t i = 0; i < kSampleCount; ++i) {
-    const Vec3 position(positions[0][i], positions[1][i], positions[2][i]);
-    EXPECT_NEAR(many[i], distance.at(position.cwiseMax(first).cwiseMin(last)), 1e-5);
   }
 }
 

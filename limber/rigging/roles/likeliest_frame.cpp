@@ -14,7 +14,7 @@ namespace {
 constexpr double kAsymmetryScale = 0.1;   // asymmetry that counts as much as e times less probability of a stance
 constexpr double kMinProbability = 1e-3;  // of a stance
 constexpr double kUnusualUp = 0.1;        // models whose up is neither +Y nor +Z, to those whose up is one of these
-constexpr std::size_t kMostFrames = 4;    // that are read
+constexpr std::size_t kMaxFrames = 4;     // that are read
 constexpr double kDoubt = 4;              // logarithm of likelihoods' ratio up to which a frame is read
 constexpr double kIndependentJoints = 8;  // joints err together: all count as much as so many that err on their own
 
@@ -51,7 +51,7 @@ RoleReading readInLikeliestFrame(const std::vector<AnatomicalFrame>& frames, con
                    [](const Candidate& a, const Candidate& b) { return a.likelihood > b.likelihood; });
   RoleReading best(surface, weights, *candidates.front().frame);
   double bestLikelihood = candidates.front().likelihood - kIndependentJoints * best.meanLogError();
-  for (std::size_t k = 1; k < std::min(candidates.size(), kMostFrames); ++k) {
+  for (std::size_t k = 1; k < std::min(candidates.size(), kMaxFrames); ++k) {
     if (candidates[k].likelihood < candidates.front().likelihood - kDoubt) break;
     RoleReading reading(surface, weights, *candidates[k].frame);
     const double likelihood = candidates[k].likelihood - kIndependentJoints * reading.meanLogError();

@@ -15,7 +15,7 @@ namespace limber {
 // frames   one or more (possibleFrames)
 // stance   of the same mesh
 // surface  of the same mesh
-// Throws Error as readSamples does. Cost: a reading for each frame in doubt, kMostFrames at most.
+// Throws Error as readSamples does. Cost: a reading for each frame in doubt, kMaxFrames at most.
 RoleReading readInLikeliestFrame(const std::vector<AnatomicalFrame>& frames, const LearnedStance& stance,
                                  const SurfaceSamples& surface, const ReadingWeights& weights);
 

@@ -11,8 +11,8 @@ namespace {
 
 // Of the predicted start of a sample's bone from the joint where that bone begins: heights.
 constexpr double kNearStart = 0.06;
-constexpr double kLeastError = 1e-6;    // heights
-constexpr double kFewestSamples = 1.5;  // sum of weights, 1 for each sample whose bone begins at the joint
+constexpr double kMinError = 1e-6;   // heights
+constexpr double kMinSamples = 1.5;  // sum of weights, 1 for each sample whose bone begins at the joint
 
 std::optional<Index> indexOf(const std::vector<std::string>& names, std::string_view name) {
   const auto found = std::find(names.begin(), names.end(), name);
@@ -59,7 +59,7 @@ double RoleReading::meanLogError() const {
   double sum = 0, weight = 0;
   for (const LearnedJoint& joint : reading_.joints) {
     if (joint.known) continue;
-    sum += joint.confidence * std::log(std::max(joint.expectedError, kLeastError * frame_.height));
+    sum += joint.confidence * std::log(std::max(joint.expectedError, kMinError * frame_.height));
     weight += joint.confidence;
   }
   return weight > 0 ? sum / weight : 0;
@@ -76,7 +76,7 @@ std::optional<Vec3> RoleReading::boneEnd(std::string_view part, const Vec3& star
     sum += own * toBody(sample.boneEnd);
     weight += own;
   }
-  return weight < kFewestSamples ? std::nullopt : std::optional<Vec3>(sum / weight);
+  return weight < kMinSamples ? std::nullopt : std::optional<Vec3>(sum / weight);
 }
 
 std::string_view RoleReading::partOf(std::size_t sample) const {
