@@ -20,8 +20,7 @@ constexpr std::uint32_t statesOf(PartKind kind) {
   return mask;
 }
 
-constexpr std::uint32_t kLegStates = statesOf(PartKind::kLeg), kArmStates = statesOf(PartKind::kArm),
-                        kCenterStates = bit(PartState::kTrunk) | bit(PartState::kNeck) | bit(PartState::kHead);
+constexpr std::uint32_t kLegStates = statesOf(PartKind::kLeg), kArmStates = statesOf(PartKind::kArm);
 
 // The segments of a limb in their order, one bit each; none for what is no limb.
 std::uint32_t limbStatesAfter(PartState state) {

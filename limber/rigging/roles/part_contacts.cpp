@@ -9,27 +9,17 @@
 #include <utility>
 
 #include "limber/core/shortest_paths.h"
+#include "limber/geometry/mesh/vertex_triangles.h"
 
 namespace limber {
 
 namespace {
 
-constexpr double kHolds = 0.04;  // heights of a border: shorter ones are where samples of two parts lie close
-
-std::vector<std::vector<Index>> neighboursOf(const TriMesh& mesh) {
-  std::vector<std::vector<Index>> neighbours(mesh.vertexCount());
-  for (const Triangle& t : mesh.triangles) {
-    for (int i = 0; i < 3; ++i) {
-      neighbours[t[i]].push_back(t[(i + 1) % 3]);
-      neighbours[t[(i + 1) % 3]].push_back(t[i]);
-    }
-  }
-  return neighbours;
-}
+constexpr double kMinBorder = 0.04;  // heights of a border: shorter ones are where samples of two parts lie close
 
 // The sample that is nearest to each vertex along edges; none on components without a sample.
 std::vector<std::optional<std::size_t>> nearestSamples(const TriMesh& mesh, std::span<const SurfaceSample> samples) {
-  const std::vector<std::vector<Index>> neighbours = neighboursOf(mesh);
+  const Grouped<Index> trianglesAt = trianglesAtVertices(mesh.triangles, mesh.vertexCount());
   std::vector<double> distances(mesh.vertexCount(), std::numeric_limits<double>::infinity());
   std::vector<std::optional<std::size_t>> nearest(mesh.vertexCount());
   std::vector<Index> sources;
@@ -43,7 +33,9 @@ std::vector<std::optional<std::size_t>> nearestSamples(const TriMesh& mesh, std:
     }
   }
   const auto forEachNeighbour = [&](Index v, const auto& visit) {
-    for (const Index next : neighbours[v]) visit(next, (mesh.position(next) - mesh.position(v)).norm());
+    for (const Index next : neighboursOf(v, mesh.triangles, trianglesAt)) {
+      visit(next, (mesh.position(next) - mesh.position(v)).norm());
+    }
   };
   shortenPaths<Index>(sources, distances, forEachNeighbour, [&](Index from, Index to) { nearest[to] = nearest[from]; });
   return nearest;
@@ -90,7 +82,7 @@ std::vector<PartContact> grownTogether(const TriMesh& mesh, std::span<const Surf
   }
   std::vector<PartContact> contacts;
   for (const auto& [parts, length] : lengths) {
-    if (length > kHolds) contacts.push_back({parts.first, parts.second, length});
+    if (length > kMinBorder) contacts.push_back({parts.first, parts.second, length});
   }
   std::stable_sort(contacts.begin(), contacts.end(),
                    [](const PartContact& a, const PartContact& b) { return a.length > b.length; });
