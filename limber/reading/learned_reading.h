@@ -74,7 +74,7 @@ struct LearnedStance {
   std::array<double, kStances> probabilities = {};  // of stanceRotations
 };
 
-// Which axis is up and which is front: the body is put in all 24 stances, and the network tells in which it stands.
+// Which axis is up and which is front: the network scores the body in each of 24 orientations.
 // Errors as for readSamples. Cost: 24 of evaluate's, 19 ms on one core.
 LearnedStance stanceOf(SurfaceSamples surface, const ReadingWeights& weights);
 

@@ -35,7 +35,7 @@ struct RigMemory {
 };
 
 struct RigOptions {
-  std::optional<Index> handles;  // joints wanted, 1 to #V (with a triangle); none: the best suggested count
+  std::optional<Index> handles;  // number of joints, 1 to #V (with a triangle); none: the best suggested count
 
   // Shared by calls for one and the same mesh; null: everything is worked out anew. The answers are the same.
   std::shared_ptr<RigMemory> memory = {};
@@ -61,7 +61,7 @@ struct TemplateMatch {
 // Joints in doubt that a user is asked for.
 inline constexpr std::size_t kMaxDoubts = 3;
 
-// The confidence from which on the model is taken to stand as the template was fitted.
+// The confidence from which on a template is taken without a question, and its up axis for the model's.
 inline constexpr double kSureTemplate = 0.75;
 
 // A count of handles worth choosing.

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t kFingersOfHands = 8;  // of both together, from which on they get fingers
 constexpr double kDoubtfulJoint = 0.05;     // expected error, heights
-constexpr double kWorthNaming = 0.01;       // confidence of a kind that is told beside the likeliest
+constexpr double kWorthNaming = 0.01;       // confidence of a kind that is reported beside the likeliest
 constexpr double kMissing = 100;            // above any error
 
 bool hasFingers(const RoleReading& reading) {

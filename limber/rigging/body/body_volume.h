@@ -20,7 +20,7 @@ struct BodyVolume {
   std::vector<MedialSphere> spheres;  // deepest first, a few hundred
 };
 
-// Whole pieces that are turned inside out are turned back first; what lies inside is told by the winding number.
+// Whole pieces that are turned inside out are turned back first; inside is where the winding number says so.
 //
 // mesh  as prepareMesh makes it: longest side 1
 // Throws Error kUnsupported where nothing lies inside (a flat sheet), or inside and outside cannot be told apart. Cost:

@@ -23,7 +23,7 @@ std::span<const BodyKind> bodyKinds();
 // Throws Error kBadArgument that lists the names there are.
 const BodyKind& findBodyKind(std::string_view name);
 
-// A skeleton, and which roles tell where its joints are.
+// A skeleton, and the roles by which its joints are positioned.
 struct RoledSkeleton {
   TemplateSkeleton skeleton;
   std::vector<std::optional<RolePosition>> roles;  // #J; of tips the role of the joint above

@@ -1,4 +1,4 @@
-// Which joints of a reading (ReadingWeights::roles) tell where the joints of a skeleton are.
+// Which joints of a reading (ReadingWeights::roles) give the positions of a skeleton's joints.
 #pragma once
 
 #include <optional>
@@ -33,7 +33,7 @@ std::string partOfRole(std::string_view role);
 // roles of theirs as far as along their chain at rest; further joints of limbs and necks lie between those around them.
 //
 // anatomy  of the skeleton
-// Returns #J; none for joints that no role tells of: props, hair, a face, what is beyond a limb's last role.
+// Returns #J; none for joints without a role: props, hair, a face, what is beyond a limb's last role.
 std::vector<std::optional<RolePosition>> jointRoles(const Skeleton& skeleton, const Anatomy& anatomy);
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// How a body stands, by its symmetry and by what the networks say.
+// The orientation of a body, by its symmetry and by what the networks say.
 #pragma once
 
 #include <vector>
@@ -9,8 +9,8 @@
 
 namespace limber {
 
-// The reading in the likeliest frame. Frames that symmetry and stance leave in doubt, front or back mostly, are told
-// apart by where joints are expected to err less: the networks learned from bodies that stand as they should.
+// The reading in the likeliest frame. Of frames that symmetry and stance leave in doubt, front or back mostly, the
+// one is likelier in which joints are expected to err less: the networks learned from bodies in their own frame.
 //
 // frames   one or more (possibleFrames)
 // stance   of the same mesh

@@ -8,7 +8,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kTipBeyond = 0.5;  // of a bone: its end beyond the joint, where no sample tells
+constexpr double kTipBeyond = 0.5;  // of a bone: its end beyond the joint, where no sample says
 
 // Beyond the last joint of a limb: the end of its bone.
 Vec3 tipOf(const RoledSkeleton& made, Index tip, const RoleReading& reading, const std::vector<Vec3>& positions) {

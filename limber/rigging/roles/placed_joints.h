@@ -10,7 +10,7 @@ namespace limber {
 
 // Joints with a role are at its position, pinned ones where they are pinned (and are placed from then on), the others
 // lie between as in the skeleton's rest pose; tips are where samples say that the last bone of a limb ends. A skeleton
-// without any role stands in the model as it is, as high.
+// without any role keeps its own positions, as high as the model.
 //
 // pins  #J
 // Returns #J, body space.

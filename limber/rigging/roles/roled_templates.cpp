@@ -62,7 +62,7 @@ RoledSkeleton templateWithRoles(const TemplateSkeleton& skeleton, const RoleRead
   return made;
 }
 
-// A user's, rotated to stand as templates do.
+// Oriented as templates are.
 RoledSkeleton ownWithRoles(const Skeleton& skeleton, std::string_view name) {
   const Anatomy anatomy = readAnatomy(skeleton);
   Mat3 axes;
