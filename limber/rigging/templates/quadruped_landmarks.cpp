@@ -18,6 +18,24 @@ constexpr double kTailAside = 0.08;  // of a tail's end from the middle
 constexpr double kLowestTail = 0.1;
 constexpr double kShortestTail = 0.1;
 
+// Where the joints of an animal are relative to the shapes that show them. Lengths in body heights; fractions of the
+// trunk are of the height from its underside to its back; fractions of a leg are of the height of its upper joint.
+constexpr struct QuadrupedProportions {
+  double hipUp = 0.49;                     // hind legs' upper joints: fraction, from where the legs part to the back
+  double shoulderUp = 0.24;                // front legs' upper joints, likewise
+  double knee = 0.71, kneeForward = 0.09;  // fractions of the leg; the knee lies before the middle of it
+  double hock = 0.39;
+  double hindToes = 0.1;
+  double elbow = 0.54;
+  double frontFoot = 0.15;
+  double frontToes = 0.05;
+  double hipsUp = 0.62, hipsForward = -0.02;  // fraction of the trunk; from the hind legs' upper joints
+  double tailUp = 0.68, tailForward = -0.11;
+  double spineUp = 0.55;
+  double chestUp = 0.52, chestForward = -0.06;  // from the front legs' upper joints
+  double neckUp = 0.48, neckForward = 0.08;
+} kProportions = {};
+
 struct LegJoints {
   Index upper = 0, lower = 0, foot = 0, toes = 0;
 };
@@ -66,8 +84,8 @@ struct Column {
 class QuadrupedMover {
  public:
   QuadrupedMover(const BodyVolume& body, const AnatomicalFrame& frame, const std::vector<std::optional<Vec3>>& pins,
-                 std::vector<Vec3>& positions, const QuadrupedProportions& proportions)
-      : body_(body), frame_(frame), pins_(pins), positions_(positions), proportions_(proportions) {}
+                 std::vector<Vec3>& positions)
+      : body_(body), frame_(frame), pins_(pins), positions_(positions) {}
 
   // Fractions of the height of a leg's upper joint, but for `upper`.
   struct LegProportions {
@@ -76,25 +94,25 @@ class QuadrupedMover {
   };
 
   bool frontLegs(const std::array<LegJoints, 2>& joints) {
-    const QuadrupedProportions& p = proportions_;
+    const QuadrupedProportions& p = kProportions;
     return legs(joints, {p.shoulderUp, p.elbow, 0, p.frontFoot, p.frontToes}, toes_[0]);
   }
 
   bool hindLegs(const std::array<LegJoints, 2>& joints) {
-    const QuadrupedProportions& p = proportions_;
+    const QuadrupedProportions& p = kProportions;
     return legs(joints, {p.hipUp, p.knee, p.kneeForward, p.hock, p.hindToes}, toes_[1]);
   }
 
   void rear(const QuadrupedJoints& joints) {
     const double legs = 0.5 * (positions_[joints.hind[0].upper].z() + positions_[joints.hind[1].upper].z());
-    moveInto(joints.hips, legs + proportions_.hipsForward, proportions_.hipsUp);
-    moveInto(joints.tail, legs + proportions_.tailForward, proportions_.tailUp);
+    moveInto(joints.hips, legs + kProportions.hipsForward, kProportions.hipsUp);
+    moveInto(joints.tail, legs + kProportions.tailForward, kProportions.tailUp);
   }
 
   void fore(const QuadrupedJoints& joints) {
     const double legs = 0.5 * (positions_[joints.front[0].upper].z() + positions_[joints.front[1].upper].z());
-    moveInto(joints.chest, legs + proportions_.chestForward, proportions_.chestUp);
-    moveInto(joints.neck, legs + proportions_.neckForward, proportions_.neckUp);
+    moveInto(joints.chest, legs + kProportions.chestForward, kProportions.chestUp);
+    moveInto(joints.neck, legs + kProportions.neckForward, kProportions.neckUp);
   }
 
   // Along the tail from its root to the end of the body that lies farthest behind it in the middle.
@@ -127,8 +145,8 @@ class QuadrupedMover {
     }
     if (!front || !hind) return;
     const double from = positions_[joints.hips].z(), to = positions_[joints.chest].z();
-    moveInto(joints.spine[0], from + (to - from) / 3, proportions_.spineUp);
-    moveInto(joints.spine[1], from + 2 * (to - from) / 3, proportions_.spineUp);
+    moveInto(joints.spine[0], from + (to - from) / 3, kProportions.spineUp);
+    moveInto(joints.spine[1], from + 2 * (to - from) / 3, kProportions.spineUp);
   }
 
  private:
@@ -185,18 +203,16 @@ class QuadrupedMover {
   const AnatomicalFrame& frame_;
   const std::vector<std::optional<Vec3>>& pins_;
   std::vector<Vec3>& positions_;
-  const QuadrupedProportions& proportions_;
   std::array<std::array<Vec3, 2>, 2> toes_ = {};  // front and hind, left and right
 };
 
 }  // namespace
 
 void refineQuadruped(const TemplateSkeleton& skeleton, const BodyVolume& body, const AnatomicalFrame& frame,
-                     const std::vector<std::optional<Vec3>>& pins, std::vector<Vec3>& positions,
-                     const QuadrupedProportions& proportions) {
+                     const std::vector<std::optional<Vec3>>& pins, std::vector<Vec3>& positions) {
   const std::optional<QuadrupedJoints> joints = quadrupedJointsOf(skeleton);
   if (!joints) return;
-  QuadrupedMover mover(body, frame, pins, positions, proportions);
+  QuadrupedMover mover(body, frame, pins, positions);
   const bool fore = mover.frontLegs(joints->front), rear = mover.hindLegs(joints->hind);
   if (fore) mover.fore(*joints);
   if (rear) mover.rear(*joints);
