@@ -16,6 +16,12 @@ bool hasFingers(const RoleReading& reading) {
   return reading.fingers(Side::kLeft) + reading.fingers(Side::kRight) >= kFingersOfHands;
 }
 
+// Few hands show their fingers, and a limb that is cut off mostly leaves some of its first bone.
+bool saysNothingOfLimb(std::string_view role) {
+  const RoleName name = splitName(role);
+  return name.limb == "finger" || name.segment == "base" || name.segment == "upper";
+}
+
 // What a plan gets where the user leaves the choice; null where it gets handles.
 const BodyKind* kindOfPlan(std::string_view plan, const RoleReading& reading) {
   if (plan == "upright" && hasFingers(reading)) return &findBodyKind("humanoid-fingers");
@@ -41,14 +47,15 @@ std::optional<std::string_view> planOf(const Anatomy& anatomy) {
 std::vector<TemplateLimb> limbsOf(const RoledSkeleton& made, const RoleReading& reading) {
   std::vector<TemplateLimb> limbs = limbChains(made.skeleton);
   for (TemplateLimb& limb : limbs) {
-    bool hasRole = false, isThere = false;
+    bool isAsked = false, isThere = false;
     for (const Index joint : limb.joints) {
-      // Few hands show their fingers: that they are not seen says nothing.
-      if (!made.roles[joint] || made.roles[joint]->from.starts_with("finger")) continue;
-      hasRole = true;
-      isThere = isThere || reading.has(made.roles[joint]->from) || reading.has(made.roles[joint]->to);
+      if (!made.roles[joint] || saysNothingOfLimb(made.roles[joint]->from)) continue;
+      const auto& [from, to, fraction] = *made.roles[joint];
+      isAsked = true;
+      isThere = isThere || reading.isKnown(from) ||
+                ((reading.has(from) || reading.has(to)) && reading.showsPart(partOfRole(from)));
     }
-    limb.isThere = isThere || !hasRole;
+    limb.isThere = isThere || !isAsked;
   }
   return limbs;
 }

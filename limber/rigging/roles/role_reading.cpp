@@ -44,6 +44,12 @@ bool RoleReading::has(std::string_view role) const {
   return index && reading_.joints[*index].present;
 }
 
+bool RoleReading::showsPart(std::string_view part) const {
+  const std::optional<Index> index = indexOf(weights_->parts, part);
+  return std::any_of(reading_.samples.begin(), reading_.samples.end(),
+                     [&](const LearnedSample& sample) { return sample.part == index; });
+}
+
 Vec3 RoleReading::position(const RolePosition& at) const {
   const Vec3 from = toBody(reading_.joints[roleOf(at.from)].position);
   const Vec3 to = at.isRole() ? from : toBody(reading_.joints[roleOf(at.to)].position);

@@ -23,6 +23,7 @@ class RoleReading {
 
   const AnatomicalFrame& frame() const { return frame_; }
   bool has(std::string_view role) const;  // false for a role that the weights do not have
+  bool showsPart(std::string_view part) const;  // whether any sample is of it
   // Of a joint, even if the body lacks it. Body space; heights.
   Vec3 position(const RolePosition& at) const;
   double expectedError(const RolePosition& at) const;
