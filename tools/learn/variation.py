@@ -241,12 +241,13 @@ def _lose_fingers(cloud, body, rng):
 # What a broken body lacks: beginnings of the names of roles and parts. A stump may be left.
 LIMBS = (("fore_",), ("fore_middle", "fore_lower", "fore_end"), ("hind_",), ("hind_middle", "hind_lower", "hind_end"),
          ("head", "neck", "jaw", "ear"))
+LIMB_ODDS = (0.15, 0.2, 0.15, 0.2, 0.3)
 
 
 def _break(cloud, rng):
     """Half bodies, busts, torsos: limbs or all beyond a plane are not there, and neither are the roles."""
     if rng.rand() < 0.6:
-        lost = LIMBS[rng.randint(len(LIMBS))]
+        lost = LIMBS[rng.choice(len(LIMBS), p=LIMB_ODDS)]
         side = rng.choice(["", "", ".L", ".R"]) if lost[0] != "head" else ""
         is_lost = lambda name: name.startswith(lost) and name.endswith(side)
         fingers = lambda name: lost[0].startswith("fore") and name.startswith("finger") and name.endswith(side)
@@ -521,6 +522,14 @@ def mirrored(sample, rng):
                   sample.bone_known, sample.plan, sample.fingers[::-1].copy(), pin_roles.astype("i8"), pin_positions)
 
 
+def _off_axes(acts, rng):
+    """A rotation vector: bodies are not exactly along the axes, and whose pose is not symmetric may look aside."""
+    off = rng.randn(3) * np.radians([5, 8, 4])
+    if acts and rng.rand() < 0.4:
+        off[1] = np.radians(rng.uniform(-45, 45))
+    return off
+
+
 def vary(body, rng):
     """A training sample."""
     acts = body.plan == words.PLAN["upright"] and rng.rand() < 0.45
@@ -537,13 +546,13 @@ def vary(body, rng):
     if acts and rng.rand() < 0.35:
         size = np.linalg.norm(np.ptp(cloud.points, axis=0))
         _support(cloud, size, len(body.points) // 30, rng)
-    if rng.rand() < 0.16:
+    if rng.rand() < 0.2:
         _break(cloud, rng)
     _damage(cloud, rng)
     _transform(cloud, np.diag(np.exp(rng.randn(3) * 0.1)))
     if rng.rand() < 0.5:
         _mirror(cloud)
-    _transform(cloud, rotations((rng.randn(3) * np.radians([5, 8, 4]))[None])[0].astype(float))
+    _transform(cloud, rotations(_off_axes(acts, rng)[None])[0].astype(float))
     return _finish(cloud, body, rng)
 
 
