@@ -3,29 +3,44 @@
 #include <algorithm>
 #include <span>
 
+#include "limber/rigging/roles/finger_count.h"
+
 namespace limber {
 
 namespace {
 
-constexpr std::size_t kFingersOfHands = 8;  // of both together, from which on they get fingers
-constexpr double kDoubtfulJoint = 0.05;     // expected error, heights
-constexpr double kWorthNaming = 0.01;       // confidence of a kind that is reported beside the likeliest
-constexpr double kMissing = 100;            // above any error
+constexpr std::size_t kLegsOfSpiders = 7;  // counted, from which on a body has eight
+constexpr double kDoubtfulJoint = 0.05;    // expected error, heights
+constexpr double kMissing = 100;           // above any error
 
-bool hasFingers(const RoleReading& reading) {
-  return reading.fingers(Side::kLeft) + reading.fingers(Side::kRight) >= kFingersOfHands;
+bool isFirstOfLimb(std::string_view role) {
+  const RoleName name = splitName(role);
+  return name.segment == "base" || name.segment == "upper";
 }
 
-// Few hands show their fingers, and a limb that is cut off mostly leaves some of its first bone.
-bool saysNothingOfLimb(std::string_view role) {
-  const RoleName name = splitName(role);
-  return name.limb == "finger" || name.segment == "base" || name.segment == "upper";
+// Where a limb is cut off, a little of its first bone is mostly left, and the networks put all of its joints there. No
+// sample then is of its further parts. Toys have limbs of one bone: no further joints are read either.
+bool isThere(const TemplateLimb& limb, const RoledSkeleton& made, const RoleReading& reading) {
+  bool hasRole = false, isRead = false, leadsOn = false, isShown = false;
+  for (const Index joint : limb.joints) {
+    // Few hands show their fingers: that they are not seen says nothing.
+    if (!made.roles[joint] || made.roles[joint]->from.starts_with("finger")) continue;
+    const auto& [from, to, fraction] = *made.roles[joint];
+    hasRole = true;
+    if (reading.isKnown(from)) return true;
+    if (!reading.has(from) && !reading.has(to)) continue;
+    isRead = true;
+    if (isFirstOfLimb(from)) continue;
+    leadsOn = true;
+    isShown = isShown || reading.showsPart(partOfRole(from));
+  }
+  return !hasRole || (isRead && (isShown || !leadsOn));
 }
 
 // What a plan gets where the user leaves the choice; null where it gets handles.
-const BodyKind* kindOfPlan(std::string_view plan, const RoleReading& reading) {
-  if (plan == "upright" && hasFingers(reading)) return &findBodyKind("humanoid-fingers");
-  if (plan == "many" && reading.has("midb_upper.L") && reading.has("midb_upper.R")) return &findBodyKind("spider");
+const BodyKind* kindOfPlan(std::string_view plan, std::size_t fingers, std::size_t legs) {
+  if (plan == "upright" && fingers >= kHandWithFingers) return &findBodyKind("humanoid-fingers");
+  if (plan == "many" && legs >= kLegsOfSpiders) return &findBodyKind("spider");
   const std::span<const BodyKind> kinds = bodyKinds();
   const auto first = std::find_if(kinds.begin(), kinds.end(), [&](const BodyKind& kind) { return kind.plan == plan; });
   return first == kinds.end() ? nullptr : &*first;
@@ -46,17 +61,7 @@ std::optional<std::string_view> planOf(const Anatomy& anatomy) {
 
 std::vector<TemplateLimb> limbsOf(const RoledSkeleton& made, const RoleReading& reading) {
   std::vector<TemplateLimb> limbs = limbChains(made.skeleton);
-  for (TemplateLimb& limb : limbs) {
-    bool isAsked = false, isThere = false;
-    for (const Index joint : limb.joints) {
-      if (!made.roles[joint] || saysNothingOfLimb(made.roles[joint]->from)) continue;
-      const auto& [from, to, fraction] = *made.roles[joint];
-      isAsked = true;
-      isThere = isThere || reading.isKnown(from) ||
-                ((reading.has(from) || reading.has(to)) && reading.showsPart(partOfRole(from)));
-    }
-    limb.isThere = isThere || !isAsked;
-  }
+  for (TemplateLimb& limb : limbs) limb.isThere = isThere(limb, made, reading);
   return limbs;
 }
 
@@ -67,10 +72,11 @@ double confidenceOf(double planProbability, const RoledSkeleton& made, const Rol
   return planProbability * there * there * there;
 }
 
-std::vector<TemplateMatch> matchesOf(const RoleReading& reading, const ReadingWeights& weights) {
+std::vector<TemplateMatch> matchesOf(const RoleReading& reading, const ReadingWeights& weights, std::size_t fingers,
+                                     std::size_t legs) {
   std::vector<TemplateMatch> matches;
   for (const std::string& plan : weights.plans) {
-    const BodyKind* kind = kindOfPlan(plan, reading);
+    const BodyKind* kind = kindOfPlan(plan, fingers, legs);
     if (!kind) continue;
     const double confidence = confidenceOf(reading.probability(plan), skeletonOfKind(*kind, reading), reading);
     matches.push_back({std::string(kind->name), confidence});

@@ -14,6 +14,8 @@
 
 namespace limber {
 
+inline constexpr double kWorthNaming = 0.01;  // confidence of a kind that is reported beside the likeliest
+
 // The plan (of ReadingWeights::plans) that a user's skeleton has; none where it shows no limbs.
 std::optional<std::string_view> planOf(const Anatomy& anatomy);
 
@@ -24,7 +26,10 @@ std::vector<TemplateLimb> limbsOf(const RoledSkeleton& made, const RoleReading& 
 double confidenceOf(double planProbability, const RoledSkeleton& made, const RoleReading& reading);
 
 // For each plan that gets a skeleton the kind that suits the body, the likeliest first.
-std::vector<TemplateMatch> matchesOf(const RoleReading& reading, const ReadingWeights& weights);
+//
+// fingers, legs  of MeasuredModel: whether people get fingers, and how many legs the many-legged
+std::vector<TemplateMatch> matchesOf(const RoleReading& reading, const ReadingWeights& weights, std::size_t fingers,
+                                     std::size_t legs);
 
 // Drops kinds that are not worth naming, but for the first.
 void dropUnlikely(std::vector<TemplateMatch>& matches);

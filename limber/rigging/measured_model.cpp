@@ -5,6 +5,9 @@
 #include "limber/geometry/surface/stray_pieces.h"
 #include "limber/reading/learned_reading.h"
 #include "limber/reading/shape_weights.h"
+#include "limber/rigging/kind_choice.h"
+#include "limber/rigging/roles/finger_count.h"
+#include "limber/rigging/roles/leg_count.h"
 #include "limber/rigging/roles/likeliest_frame.h"
 
 namespace limber {
@@ -23,9 +26,11 @@ std::shared_ptr<const MeasuredModel> measureModel(const TriMesh& mesh, const Rig
   SurfaceSamples samples = sampleSurface(surface, weights->sampleCount());
   RoleReading reading = readInLikeliestFrame(possibleFrames(surface, body, options.up, options.front),
                                              stanceOf(samples, *weights), samples, *weights);
+  const std::size_t fingers = countFingers(surface, reading);
+  const std::size_t legs = reading.probability("many") > kWorthNaming ? countLegs(body, reading) : 0;
   const auto model = std::make_shared<const MeasuredModel>(
       MeasuredModel{mesh.vertexCount(), mesh.triangleCount(), options.up, options.front, weights, std::move(cleared),
-                    std::move(body), std::move(samples), std::move(reading)});
+                    std::move(body), std::move(samples), std::move(reading), fingers, legs});
   if (options.memory) options.memory->measured = model;
   return model;
 }

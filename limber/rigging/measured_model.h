@@ -19,7 +19,9 @@ struct MeasuredModel {
   std::optional<TriMesh> cleared;  // of stray pieces (withoutStrays); none where the mesh has none
   BodyVolume body;
   SurfaceSamples samples;
-  RoleReading reading;  // without known joints
+  RoleReading reading;      // without known joints
+  std::size_t fingers = 0;  // countFingers
+  std::size_t legs = 0;     // countLegs; 0 where the body hardly has many
 
   const AnatomicalFrame& frame() const { return reading.frame(); }
 };

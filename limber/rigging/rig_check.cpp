@@ -65,7 +65,7 @@ RigCheck checkRigging(const TriMesh& mesh, const RigOptions& options) {
   const std::shared_ptr<const MeasuredModel> measured = measureModel(surface, options);
   const RoleReading& reading = measured->reading;
   RigCheck check;
-  check.kinds = matchesOf(reading, *measured->weights);
+  check.kinds = matchesOf(reading, *measured->weights, measured->fingers, measured->legs);
   dropUnlikely(check.kinds);
   const TemplateMatch& likeliest = check.kinds.front();
   check.isSure = likeliest.confidence >= kSureTemplate;

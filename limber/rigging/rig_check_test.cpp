@@ -8,6 +8,7 @@
 
 #include "limber/rigging/body/testing/capsule_person.h"
 #include "limber/rigging/measured_model.h"
+#include "limber/rigging/testing/chair.h"
 #include "limber/samples/half_mesh.h"
 
 namespace limber {
@@ -102,14 +103,7 @@ TEST(RigCheck, ArmsThatAreCutOffAreMissing) {
 }
 
 TEST(RigCheck, AChairIsNoBody) {
-  TriMesh chair;
-  for (const double x : {-0.2, -0.1, 0.0, 0.1, 0.2}) testing::addCapsule(chair, {x, 0.45, -0.2}, {x, 0.45, 0.2}, 0.06);
-  for (const double x : {-0.22, 0.22}) {
-    testing::addCapsule(chair, {x, 0.03, 0.2}, {x, 0.45, 0.2}, 0.03);
-    testing::addCapsule(chair, {x, 0.03, -0.2}, {x, 0.97, -0.2}, 0.03);
-  }
-  testing::addCapsule(chair, {-0.22, 0.9, -0.2}, {0.22, 0.9, -0.2}, 0.03);
-  const RigCheck result = check(chair);
+  const RigCheck result = check(testing::chair());
   ASSERT_FALSE(result.kinds.empty());
   EXPECT_LT(result.kinds.front().confidence, kLikelyTemplate);
   EXPECT_FALSE(result.isSure);

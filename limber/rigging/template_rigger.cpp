@@ -109,7 +109,7 @@ AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress
   std::vector<TemplateMatch> matches;
   std::string kind = options.templateName;
   if (kind == "auto" && !options.templateSkeleton) {
-    matches = matchesOf(reading, weights);
+    matches = matchesOf(reading, weights, measured->fingers, measured->legs);
     if (options.mayAbstain && leavesTheChoice(options) && matches.front().confidence < kLikelyTemplate) {
       AutoRig rig = withHandles(mesh, options, matches.front(), progress);
       dropUnlikely(matches);

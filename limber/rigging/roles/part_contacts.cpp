@@ -49,9 +49,7 @@ bool isAnyPart(std::string_view limb) {
 bool areNeighbours(std::string_view onePart, std::string_view otherPart) {
   const RoleName one = splitName(onePart), other = splitName(otherPart);
   if (isAnyPart(one.limb) || isAnyPart(other.limb)) return true;
-  if (one.limb == other.limb && one.side == other.side) {
-    return (one.segment == "lower") != (other.segment == "lower") || one.segment == other.segment;
-  }
+  if (one.limb == other.limb && one.side == other.side) return true;
   const auto isTrunk = [](const RoleName& part) {
     return part.limb == "trunk" || part.limb == "neck" || part.limb == "head" || part.limb == "tail";
   };

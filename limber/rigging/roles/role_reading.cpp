@@ -94,10 +94,6 @@ double RoleReading::probability(std::string_view plan) const {
   return index ? reading_.planProbabilities[*index] : 0;
 }
 
-std::size_t RoleReading::fingers(Side side) const {
-  return static_cast<std::size_t>(reading_.fingers[side == Side::kLeft ? 0 : 1].count);
-}
-
 bool RoleReading::isKnown(std::string_view role) const {
   return reading_.joints[roleOf(role)].known;
 }

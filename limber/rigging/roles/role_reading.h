@@ -40,7 +40,6 @@ class RoleReading {
   const SurfaceSamples& samples() const { return reading_.surface; }
 
   double probability(std::string_view plan) const;
-  std::size_t fingers(Side side) const;
 
   const std::vector<std::string>& roles() const { return weights_->roles; }
   bool isKnown(std::string_view role) const;

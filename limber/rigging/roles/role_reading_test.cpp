@@ -100,7 +100,6 @@ TEST(RoleReading, APersonIsRead) {
     EXPECT_TRUE(reading.has(role)) << role;
   }
   for (const char* role : {"tail_0", "wing_0.L", "mida_upper.L", "fin0_0.R"}) EXPECT_FALSE(reading.has(role)) << role;
-  for (const Side side : {Side::kLeft, Side::kRight}) EXPECT_LE(reading.fingers(side), 5u);
 }
 
 TEST(RoleReading, BonesEndWhereTheirSamplesSay) {
