@@ -34,6 +34,13 @@ def trained_for(run):
     return {"samples": samples, "hours": round(hours, 2)}
 
 
+def blend(network, others):
+    """The mean of the weights of networks that were trained on from one another (Wortsman et al. 2022, Model soups)."""
+    with torch.no_grad():
+        for value, *rest in zip(network.parameters(), *(other.parameters() for other in others)):
+            value.copy_(torch.stack([value, *rest]).mean(0))
+
+
 def _linear_weights(network):
     return {f"{name}.weight" for name, module in network.named_modules() if isinstance(module, nn.Linear)}
 

@@ -143,7 +143,7 @@ def do_calibrate(options):
 
 def do_export(options):
     from body import load_bodies
-    from export import read_weights, trained_for, write_golden, write_weights
+    from export import blend, read_weights, trained_for, write_golden, write_weights
     from network import load_network
 
     networks, runs = {}, {}
@@ -151,6 +151,8 @@ def do_export(options):
         run = run or run_folder(options, kind)
         if is_trained(run):
             network, saved = load_network(os.path.join(run, "state.pt"))
+            if kind == "reading" and options.mean_with:
+                blend(network, [load_network(os.path.join(other, "state.pt"))[0] for other in options.mean_with])
             networks[kind] = network, saved["sizes"]
             with open(os.path.join(run, "run.json"), encoding="utf-8") as file:
                 runs[kind] = json.load(file)
@@ -293,6 +295,7 @@ def arguments():
     step = steps.add_parser("export", help="write the weights file")
     step.add_argument("file")
     step.add_argument("--reading", help="run of the reading network")
+    step.add_argument("--mean-with", nargs="*", help="runs that it began from, whose weights it is averaged with")
     step.add_argument("--stance", help="run of the stance network")
     step.add_argument("--golden", help="also write inputs and outputs of three bodies to this JSON file")
     step.add_argument("--golden-bodies", nargs="*", default=[], help="their names")
