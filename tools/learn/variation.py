@@ -240,8 +240,8 @@ def _lose_fingers(cloud, body, rng):
 
 # What a broken body lacks: beginnings of the names of roles and parts. A stump may be left.
 LIMBS = (("fore_",), ("fore_middle", "fore_lower", "fore_end"), ("hind_",), ("hind_middle", "hind_lower", "hind_end"),
-         ("head", "neck", "jaw", "ear"))
-LIMB_ODDS = (0.15, 0.2, 0.15, 0.2, 0.3)
+         ("head", "neck", "jaw", "ear"), ("head", "jaw", "ear"))
+LIMB_ODDS = (0.15, 0.2, 0.15, 0.2, 0.15, 0.15)
 
 
 def _break(cloud, rng):
