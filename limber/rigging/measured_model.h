@@ -27,8 +27,7 @@ struct MeasuredModel {
 };
 
 // Reads up, front and networks of the options (shapeWeights where they have none); asks their memory first, and leaves
-// the result there. Throws Error as measureBody, sampleSurface and
-// readSamples do.
+// the result there. Throws Error as measureBody, sampleSurface and readSamples do.
 std::shared_ptr<const MeasuredModel> measureModel(const TriMesh& mesh, const RigOptions& options);
 
 }  // namespace limber

@@ -9,6 +9,7 @@
 #include "limber/actions/rig/figure_to_rig.h"
 #include "limber/document/rig/rig_io.h"
 #include "limber/rigging/kind_choice.h"
+#include "limber/rigging/roles/joint_roles.h"
 
 namespace limber {
 
@@ -28,10 +29,9 @@ constexpr PartWords kWords[] = {
 
 // "left hand"; other parts are called as the networks call them.
 std::string describePart(std::string_view part, bool hasArms) {
-  std::string side;
-  if (part.ends_with(".L")) side = "left ";
-  if (part.ends_with(".R")) side = "right ";
-  if (!side.empty()) part.remove_suffix(2);
+  const std::string_view sideName = splitName(part).side;
+  const std::string side = sideName.empty() ? "" : sideName == ".L" ? "left " : "right ";
+  part.remove_suffix(sideName.size());
   for (const PartWords& words : kWords) {
     if (words.part == part) return side + std::string(hasArms ? words.ofPerson : words.ofAnimal);
   }
