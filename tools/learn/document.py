@@ -45,7 +45,7 @@ def is_outdated(run):
 
 def training(run):
     """What a run was trained on: the card's table."""
-    about, cost = about_run(run), trained_for(run)
+    about, cost = about_run(run), trained_for(run, "reading")
     made = about["makers"].get(CODE, 0)
     lines = [[maker, count, about["licences"].get(maker) or LICENCES.get(maker, "")]
              for maker, count in sorted(about["makers"].items(), key=lambda item: (-item[1], item[0]))]

@@ -15,23 +15,44 @@ import torch.nn as nn
 import samples
 import vocabulary as words
 from reader import read_stance
-from network import STANCE_TOKENS, make_network
+from network import STANCE_TOKENS, load_network, make_network
 
 MAGIC = b"LRD1"
 MAX_BYTES = 1_500_000
 NO_CALIBRATION = {"plan_temperature": 1.0, "error_factor": 1.0, "sure_threshold": 0.9}
 
 
-def trained_for(run):
-    """Samples and hours of a run and of those whose weights it started from."""
+def is_weights_file(source):
+    return source.endswith(".lrd")
+
+
+def trained_for(source, kind):
+    """Samples and hours of a run, or of a weights file, and of what its weights started from."""
     samples, hours = 0, 0.0
-    while run:
-        saved = torch.load(os.path.join(run, "state.pt"), map_location="cpu")
-        samples += saved["step"] * saved["batch"]
-        hours += saved["seconds"] / 3600
-        with open(os.path.join(run, "run.json"), encoding="utf-8") as file:
-            run = json.load(file)["options"]["start"]
+    while source:
+        if is_weights_file(source):
+            card = read_weights(source)[1]["card"]
+            samples, hours, source = samples + card["samples"][kind], hours + card["hours"][kind], ""
+        else:
+            saved = torch.load(os.path.join(source, "state.pt"), map_location="cpu")
+            samples += saved["step"] * saved["batch"]
+            hours += saved["seconds"] / 3600
+            with open(os.path.join(source, "run.json"), encoding="utf-8") as file:
+                source = json.load(file)["options"]["start"]
     return {"samples": samples, "hours": round(hours, 2)}
+
+
+def network_of(source, kind):
+    """The network of a run or a weights file, and its sizes."""
+    if is_weights_file(source):
+        networks, about = read_weights(source)
+        return networks[kind], _sizes(about["networks"][kind])
+    network, saved = load_network(os.path.join(source, "state.pt"))
+    return network, saved["sizes"]
+
+
+def _sizes(about):
+    return {name: size for name, size in about.items() if name not in ("features", "tokens")}
 
 
 def blend(network, others):
@@ -93,8 +114,7 @@ def read_weights(path):
         at += 2 * count
     networks = {}
     for kind, sizes in about["networks"].items():
-        inner = {name: size for name, size in sizes.items() if name not in ("features", "tokens")}
-        network, _ = make_network(kind, **inner)
+        network, _ = make_network(kind, **_sizes(sizes))
         linear = _linear_weights(network)
         state = {}
         for name in network.state_dict():

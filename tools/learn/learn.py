@@ -143,20 +143,13 @@ def do_calibrate(options):
 
 def do_export(options):
     from body import load_bodies
-    from export import blend, read_weights, trained_for, write_golden, write_weights
-    from network import load_network
+    from export import blend, is_weights_file, network_of, read_weights, trained_for, write_golden, write_weights
 
-    networks, runs = {}, {}
-    for kind, run in (("reading", options.reading), ("stance", options.stance)):
-        run = run or run_folder(options, kind)
-        if is_trained(run):
-            network, saved = load_network(os.path.join(run, "state.pt"))
-            if kind == "reading" and options.mean_with:
-                blend(network, [load_network(os.path.join(other, "state.pt"))[0] for other in options.mean_with])
-            networks[kind] = network, saved["sizes"]
-            with open(os.path.join(run, "run.json"), encoding="utf-8") as file:
-                runs[kind] = json.load(file)
-            runs[kind].update(trained_for(run))
+    networks, cost = {}, {}
+    for kind, source in (("reading", options.reading), ("stance", options.stance)):
+        source = source or run_folder(options, kind)
+        if is_weights_file(source) or is_trained(source):
+            networks[kind], cost[kind] = network_of(source, kind), trained_for(source, kind)
     if "reading" not in networks:
         raise SystemExit("no network is trained: learn.py train reading")
     calibration = calibration_of(options)
@@ -164,11 +157,14 @@ def do_export(options):
         print("not calibrated (learn.py calibrate): confidence and errors are the network's own", file=sys.stderr)
     if "stance" not in networks:
         print("without a network for the stance (learn.py train stance), which limber asks for", file=sys.stderr)
-    about = runs["reading"]
+    run = options.reading or run_folder(options, "reading")
+    blend(networks["reading"][0], [network_of(other, "reading")[0] for other in options.mean_with])
+    with open(os.path.join(run, "run.json"), encoding="utf-8") as file:
+        about = json.load(file)
     card = {"seed": about["options"]["seed"], "data": {"bodies": about["bodies"], "plans": about["plans"]},
             "makers": about["makers"], "licences": about["licences"], "left_out": about["options"]["leave_out"],
-            "samples": {kind: run["samples"] for kind, run in runs.items()},
-            "hours": {kind: run["hours"] for kind, run in runs.items()},
+            "samples": {kind: spent["samples"] for kind, spent in cost.items()},
+            "hours": {kind: spent["hours"] for kind, spent in cost.items()},
             "calibrated_on": {name: calibration[name] for name in ("bodies", "makers")} if calibration else None}
     size = write_weights(options.file, networks, calibration, card)
     print(f"{options.file}: {size} bytes, networks {', '.join(networks)}")
@@ -275,7 +271,7 @@ def arguments():
     step.add_argument("--fold", type=int, choices=range(FOLDS), help="leave out this fold's makers")
     step.add_argument("--leave-out", nargs="*", default=[], metavar="MAKER")
     step.add_argument("--run", help="folder of the run (runs/KIND, KIND_foldK, KIND_seedN of --work)")
-    step.add_argument("--start", default="", help="a run whose weights to start from")
+    step.add_argument("--start", default="", help="a run, or a weights file, whose weights to start from")
     step.add_argument("--bodies", type=int, default=0, help="only so many of the real bodies")
     step.add_argument("--minutes", type=float, default=0, help="stop after so many; the same command goes on")
     step.add_argument("--batch", type=int, default=16)
@@ -295,8 +291,9 @@ def arguments():
     step = steps.add_parser("export", help="write the weights file")
     step.add_argument("file")
     step.add_argument("--reading", help="run of the reading network")
-    step.add_argument("--mean-with", nargs="*", help="runs that it began from, whose weights it is averaged with")
-    step.add_argument("--stance", help="run of the stance network")
+    step.add_argument("--mean-with", nargs="*", default=[],
+                      help="runs and weights files that it began from, whose weights it is averaged with")
+    step.add_argument("--stance", help="run of the stance network, or a weights file that has it")
     step.add_argument("--golden", help="also write inputs and outputs of three bodies to this JSON file")
     step.add_argument("--golden-bodies", nargs="*", default=[], help="their names")
     step.set_defaults(do=do_export)

@@ -21,6 +21,7 @@ import pictures
 import reader
 import samples
 import tables
+import train
 import variation
 import vocabulary as words
 from body import Body
@@ -159,6 +160,12 @@ class Variation(unittest.TestCase):
         np.testing.assert_array_equal(once.y[left], sample.y[right] * [-1, 1, 1])
         self.assertEqual(words.PARTS[once.part[0]], words.mirrored(words.PARTS[sample.part[0]]))
 
+    def test_a_body_at_rest_is_as_it_was_made(self):
+        body = person_body()
+        cloud = variation._at_rest(body)
+        np.testing.assert_allclose(cloud.points, body.points, atol=1e-5)
+        np.testing.assert_allclose(cloud.roles[body.has > 0], body.roles[body.has > 0], atol=1e-5)
+
     def test_bones_and_roles_move_together(self):
         body = person_body()
         sample = variation.vary(body, np.random.RandomState(3))
@@ -214,6 +221,19 @@ class Networks(unittest.TestCase):
         with torch.no_grad():
             expected = networks["stance"][0].eval()(inputs)
             torch.testing.assert_close(back["stance"](inputs), expected, atol=1e-2, rtol=1e-2)
+
+    def test_training_goes_on_from_a_weights_file(self):
+        networks = {kind: make_network(kind) for kind in ("reading", "stance")}
+        card = {"samples": {"reading": 160, "stance": 32}, "hours": {"reading": 0.5, "stance": 0.1}}
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "weights.lrd")
+            export.write_weights(path, networks, card=card)
+            begun = train._Run(train.Options(kind="stance", start=path, run=os.path.join(folder, "run")))
+            kept, sizes = export.network_of(path, "stance")
+            self.assertEqual(export.trained_for(path, "stance"), {"samples": 32, "hours": 0.1})
+        self.assertEqual(sizes, begun.sizes)
+        for name, value in begun.network.state_dict().items():
+            torch.testing.assert_close(value, kept.state_dict()[name])
 
     def test_a_trained_run_is_measured(self):
         torch.manual_seed(3)

@@ -19,6 +19,7 @@ import losses
 import variation
 import vocabulary as words
 from body import load_bodies
+from export import network_of
 from makers import CODE
 from network import STANCE_TOKENS, make_network
 
@@ -45,7 +46,7 @@ class Options:
     bodies: int = 0  # only so many of the real bodies, for the learning curve; 0: all
     minutes: float = 0  # stop (and keep the state) after so long; 0: when done
     device: str = "cpu"
-    start: str = ""  # a run whose weights this one starts from
+    start: str = ""  # a run or a weights file whose weights this one starts from
 
 
 def training_bodies(options):
@@ -129,8 +130,7 @@ class _Run:
         self.step, self.seconds = 0, 0.0
         self.steps = max(options.samples // options.batch, 1)
         if options.start:
-            begun = torch.load(os.path.join(options.start, "state.pt"), map_location="cpu")
-            self.network.load_state_dict(begun["mean"])
+            self.network.load_state_dict(network_of(options.start, options.kind)[0].state_dict())
         self.network.to(options.device)
         self.mean = copy.deepcopy(self.network)
         self.optimizer = torch.optim.AdamW(

@@ -29,6 +29,7 @@ MAX_PROP = 0.75  # the same of a prop
 SURFACE = 0.35  # area of a body's surface, about, of the square of that diagonal
 OPTIONAL = ("ear", "tail")  # parts that a body may lose and still be of its plan
 PROP = words.PART["prop"]
+AS_MADE = 0.4  # of the samples show the body as its maker left it
 
 
 @dataclass
@@ -201,8 +202,7 @@ def _pose(body, acts, rng):
     return matrices, position - np.einsum("kab,kb->ka", matrices, body.active)
 
 
-def _posed(body, acts, rng):
-    matrices, offsets = _pose(body, acts, rng)
+def _cloud_of(body, matrices, offsets):
     blended = (body.weights @ matrices.reshape(len(matrices), 9)).reshape(-1, 3, 3)
     points = np.einsum("nab,nb->na", blended, body.points) + body.weights @ offsets
     normals = unit(np.einsum("nab,nb->na", blended, body.normals))
@@ -214,6 +214,11 @@ def _posed(body, acts, rng):
     return _Cloud(points, normals, body.pieces.copy(), body.part.copy(), joints[bone], ends[bone],
                   np.ones(len(points), bool), body.flesh, np.arange(len(points)), roles, body.has.copy(),
                   body.fingers.copy())
+
+
+def _at_rest(body):
+    count = len(body.active)
+    return _cloud_of(body, np.tile(np.eye(3, dtype="f4"), (count, 1, 1)), np.zeros((count, 3), "f4"))
 
 
 def _lose_parts(cloud, body, rng):
@@ -390,18 +395,12 @@ def _pack(cloud, size, count, rng):
         return
     at, outward = cloud.points[k := rng.choice(trunk)], cloud.normals[k]
     half = size * rng.uniform(0.02, 0.12, 3)
-    points = rng.uniform(-1, 1, (count, 3))
-    face = rng.randint(3, size=count)
-    sign = rng.choice([-1.0, 1.0], count)
-    points[np.arange(count), face] = sign
-    normals = np.zeros_like(points)
-    normals[np.arange(count), face] = sign
-    turn = rotations(rng.randn(1, 3) * 0.4)[0]
-    _add(cloud, at + outward * half.min() + (points * half) @ turn.T, normals @ turn.T, rng)
+    turn, centre = rotations(rng.randn(1, 3) * 0.4)[0], at + outward * half.min()
+    _add(cloud, *_block_points(centre - half, centre + half, turn, False, count, rng), rng)
 
 
 def _block_points(low, high, turn, round_one, count, rng):
-    """Points and normals of a box, or of a cylinder along y, that is turned about y."""
+    """Points and normals of a box, or of a cylinder along y, that is turned about its centre."""
     half = (high - low) / 2
     areas = np.array([half[1] * half[2], half[0] * half[2], half[0] * half[1]])
     face, sign = rng.choice(3, count, p=areas / areas.sum()), rng.choice([-1.0, 1.0], count)
@@ -530,10 +529,24 @@ def _off_axes(acts, rng):
     return off
 
 
+def _as_made(body, rng):
+    """The body in its maker's pose and proportions, nearly: what limber is mostly given."""
+    cloud = _at_rest(body)
+    if rng.rand() < 0.3:
+        _thicken(cloud, rng)
+    _transform(cloud, np.diag(np.exp(rng.randn(3) * 0.03)))
+    if rng.rand() < 0.5:
+        _mirror(cloud)
+    _transform(cloud, rotations(rng.randn(1, 3) * np.radians([2, 3, 1]))[0].astype(float))
+    return _finish(cloud, body, rng)
+
+
 def vary(body, rng):
     """A training sample."""
+    if rng.rand() < AS_MADE:
+        return _as_made(body, rng)
     acts = body.plan == words.PLAN["upright"] and rng.rand() < 0.45
-    cloud = _posed(body, acts, rng)
+    cloud = _cloud_of(body, *_pose(body, acts, rng))
     _lose_parts(cloud, body, rng)
     if rng.rand() < 0.15:
         _lose_fingers(cloud, body, rng)
