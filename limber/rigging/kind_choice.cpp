@@ -1,7 +1,9 @@
 #include "limber/rigging/kind_choice.h"
 
 #include <algorithm>
+#include <set>
 #include <span>
+#include <string>
 
 #include "limber/rigging/roles/finger_count.h"
 
@@ -11,6 +13,7 @@ namespace {
 
 constexpr std::size_t kLegsOfSpiders = 7;  // counted, from which on a body has eight
 constexpr double kDoubtfulJoint = 0.05;    // expected error, heights
+constexpr double kMinShare = 0.008;        // of the samples, that are of a limb's further parts; fewer are mistaken
 constexpr double kMissing = 100;           // above any error
 
 bool isFirstOfLimb(std::string_view role) {
@@ -18,10 +21,11 @@ bool isFirstOfLimb(std::string_view role) {
   return name.segment == "base" || name.segment == "upper";
 }
 
-// Where a limb is cut off, a little of its first bone is mostly left, and the networks put all of its joints there. No
+// Where a limb is cut off, a little of its first bone is mostly left, and the networks put all of its joints there. Hardly a
 // sample then is of its further parts. Toys have limbs of one bone: no further joints are read either.
 bool isThere(const TemplateLimb& limb, const RoledSkeleton& made, const RoleReading& reading) {
-  bool hasRole = false, isRead = false, leadsOn = false, isShown = false;
+  bool hasRole = false, isRead = false;
+  std::set<std::string> further;  // parts
   for (const Index joint : limb.joints) {
     // Few hands show their fingers: that they are not seen says nothing.
     if (!made.roles[joint] || made.roles[joint]->from.starts_with("finger")) continue;
@@ -31,10 +35,12 @@ bool isThere(const TemplateLimb& limb, const RoledSkeleton& made, const RoleRead
     if (!reading.has(from) && !reading.has(to)) continue;
     isRead = true;
     if (isFirstOfLimb(from)) continue;
-    leadsOn = true;
-    isShown = isShown || reading.showsPart(partOfRole(from));
+    further.insert(partOfRole(from));
   }
-  return !hasRole || (isRead && (isShown || !leadsOn));
+  if (!isRead || further.empty()) return !hasRole || isRead;
+  double share = 0;
+  for (const std::string& part : further) share += reading.shareOf(part);
+  return share >= kMinShare;
 }
 
 // What a plan gets where the user leaves the choice; null where it gets handles.

@@ -26,7 +26,7 @@ std::shared_ptr<const MeasuredModel> measureModel(const TriMesh& mesh, const Rig
   SurfaceSamples samples = sampleSurface(surface, weights->sampleCount());
   RoleReading reading = readInLikeliestFrame(possibleFrames(surface, body, options.up, options.front),
                                              stanceOf(samples, *weights), samples, *weights);
-  const std::size_t fingers = countFingers(surface, reading);
+  const std::size_t fingers = reading.probability("upright") > kWorthNaming ? countFingers(surface, reading) : 0;
   const std::size_t legs = reading.probability("many") > kWorthNaming ? countLegs(body, reading) : 0;
   const auto model = std::make_shared<const MeasuredModel>(
       MeasuredModel{mesh.vertexCount(), mesh.triangleCount(), options.up, options.front, weights, std::move(cleared),

@@ -20,7 +20,7 @@ struct MeasuredModel {
   BodyVolume body;
   SurfaceSamples samples;
   RoleReading reading;      // without known joints
-  std::size_t fingers = 0;  // countFingers
+  std::size_t fingers = 0;  // countFingers; 0 where the body is hardly upright
   std::size_t legs = 0;     // countLegs; 0 where the body hardly has many
 
   const AnatomicalFrame& frame() const { return reading.frame(); }

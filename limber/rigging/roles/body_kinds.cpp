@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <string>
 
 #include <fmt/format.h>
@@ -21,8 +22,8 @@ constexpr BodyKind kKinds[] = {
     {"dinosaur", "an animal on two legs with a long tail", "dinosaur"},
     {"crawler", "a low animal on four legs, as lizards and tortoises", "four"},
     {"dragon", "a winged animal on four legs", "winged_four"},
-    {"insect", "an animal on six legs", "many"},
-    {"spider", "an animal on eight legs and more", "many"},
+    {"insect", "an animal on six legs", "many", 3, 3},
+    {"spider", "an animal on eight legs and more", "many", 4},
     {"fish", "a fish or whale, with fins where it has some", "swims"},
     {"serpent", "a snake or worm: a chain of 12 joints", "crawls"},
 };
@@ -32,17 +33,17 @@ constexpr double kLiftedHand = 0.15;  // heights above the hind feet, from which
 
 class SkeletonBuilder {
  public:
-  SkeletonBuilder(const BodyKind& kind, const RoleReading& reading) : reading_(reading) {
+  SkeletonBuilder(const BodyKind& kind, const RoleReading& reading) : kind_(kind), reading_(reading) {
     made_.skeleton.name = std::string(kind.name);
   }
 
-  RoledSkeleton build(std::string_view plan) {
-    if (plan == "swims") {
+  RoledSkeleton build() {
+    if (kind_.plan == "swims") {
       swim();
-    } else if (plan == "crawls") {
+    } else if (kind_.plan == "crawls") {
       crawl();
     } else {
-      walk(plan);
+      walk();
     }
     pairSides();
     return std::move(made_);
@@ -102,19 +103,33 @@ class SkeletonBuilder {
     return joints;
   }
 
+  // From the front.
   std::vector<std::string> legs(bool hasArms) const {
-    std::vector<std::string> legs;
+    const std::size_t arms = hasArms ? 1 : 0;
+    std::vector<std::string> likeliest;
     for (const std::string role : kLegRoles) {
-      if ((role != "fore" || !hasArms) && hasOnASide(role + "_upper")) legs.push_back(role);
+      if (role != "fore" || !hasArms) likeliest.push_back(role);
+    }
+    const auto confidence = [&](const std::string& role) {
+      return std::max(reading_.confidence(role + "_upper.L"), reading_.confidence(role + "_upper.R"));
+    };
+    std::stable_sort(likeliest.begin(), likeliest.end(),
+                     [&](const std::string& a, const std::string& b) { return confidence(a) > confidence(b); });
+    const auto read = static_cast<std::size_t>(std::count_if(
+        likeliest.begin(), likeliest.end(), [&](const std::string& role) { return hasOnASide(role + "_upper"); }));
+    likeliest.resize(std::clamp(read + arms, kind_.minPairs, kind_.maxPairs) - arms);
+    std::vector<std::string> legs;
+    for (const char* role : kLegRoles) {
+      if (std::find(likeliest.begin(), likeliest.end(), role) != likeliest.end()) legs.emplace_back(role);
     }
     if (legs.empty()) legs.push_back("hind");
     return legs;
   }
 
-  bool hasArms(std::string_view plan) const {
+  bool hasArms() const {
     if (!hasOnASide("fore_upper")) return false;
-    if (plan == "dinosaur") return true;
-    if (plan != "many") return false;
+    if (kind_.plan == "dinosaur") return true;
+    if (kind_.plan != "many") return false;
     const auto height = [&](const char* end) {
       return 0.5 *
              (reading_.position(atRole(std::string(end) + ".L")) + reading_.position(atRole(std::string(end) + ".R")))
@@ -123,7 +138,7 @@ class SkeletonBuilder {
     return height("fore_end") > height("hind_end") + kLiftedHand;
   }
 
-  void walk(std::string_view plan) {
+  void walk() {
     const Index hips = add("hips", {}, atRole("trunk_0"));
     const Index spine = add("spine", hips, {"trunk_1", "trunk_2", 0.5});
     const Index chest = add("chest", spine, atRole("trunk_3"));
@@ -131,7 +146,7 @@ class SkeletonBuilder {
     if (reading_.has("tail_0")) addTail(hips);
     if (hasOnASide("wing_0"))
       addLimb(chest, {{"UpperWing", "wing_0"}, {"LowerWing", "wing_1"}, {"WingHand", "wing_2"}});
-    const bool arms = hasArms(plan);
+    const bool arms = hasArms();
     if (arms) addLimb(chest, {{"UpperArm", "fore_upper"}, {"LowerArm", "fore_middle"}, {"Hand", "fore_end"}});
     const std::vector<std::string> pairs = legs(arms);
     for (std::size_t pair = 0; pair < pairs.size(); ++pair) {
@@ -210,6 +225,7 @@ class SkeletonBuilder {
     }
   }
 
+  const BodyKind& kind_;
   const RoleReading& reading_;
   RoledSkeleton made_;
 };
@@ -226,7 +242,7 @@ const BodyKind& findBodyKind(std::string_view name) {
 
 RoledSkeleton skeletonOfKind(const BodyKind& kind, const RoleReading& reading) {
   const TemplateSkeleton* skeleton = findTemplate(kind.name);
-  return skeleton ? templateWithRoles(*skeleton, reading) : SkeletonBuilder(kind, reading).build(kind.plan);
+  return skeleton ? templateWithRoles(*skeleton, reading) : SkeletonBuilder(kind, reading).build();
 }
 
 }  // namespace limber

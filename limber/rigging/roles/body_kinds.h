@@ -16,6 +16,8 @@ struct BodyKind {
   std::string_view name;     // "fish"
   std::string_view summary;  // one line for --help
   std::string_view plan;     // of ReadingWeights::plans
+  // Pairs of arms and legs that it has at least and at most, whatever is read.
+  std::size_t minPairs = 0, maxPairs = 5;
 };
 
 // The first one of a plan is the usual one.
@@ -30,7 +32,7 @@ struct RoledSkeleton {
 };
 
 // The kind's skeleton for a body: the template of its name. Where there is none, joints depend on the body: as many
-// legs, fins and joints of a tail as it has. Joints of all these are named by one rule: hips, spine, chest, neck, head
+// legs (within the kind's limits, the likeliest pairs), fins and joints of a tail as it has. Joints of all these are named by one rule: hips, spine, chest, neck, head
 // and tail along the trunk; per side UpperLeg, LowerLeg, Foot and Toes of one pair of legs, with Front and Hind before
 // them of two, with numbers behind them of more (from the front: none, 1, 2, ...); UpperArm or UpperWing and what is
 // below; Fin.

@@ -153,7 +153,7 @@ TEST(BodyKinds, SidesMirrorEachOther) {
   });
 }
 
-TEST(BodyKinds, HaveAsManyLegsAsTheBody) {
+TEST(BodyKinds, HaveAsManyLegsAsTheBodyWithinTheirLimits) {
   forAllKindsAndBodies([](const BodyKind& kind, const RoleReading& reading, const RoledSkeleton& made) {
     if (!walks(kind)) {
       EXPECT_TRUE(namesWith(made, "left", "Leg").empty());
@@ -164,7 +164,8 @@ TEST(BodyKinds, HaveAsManyLegsAsTheBody) {
     for (const std::string role : {"fore", "mida", "midb", "midc", "hind"}) {
       if ((role != "fore" || !hasArms) && hasOnASide(reading, role + "_upper")) ++legs;
     }
-    legs = std::max<std::size_t>(legs, 1);
+    const std::size_t arms = hasArms ? 1 : 0;
+    legs = std::max<std::size_t>(std::clamp(legs + arms, kind.minPairs, kind.maxPairs) - arms, 1);
     const std::vector<std::string> names = namesWith(made, "left", "UpperLeg");
     EXPECT_EQ(names.size(), legs);
     for (std::size_t pair = 0; pair < names.size(); ++pair) {
@@ -207,6 +208,18 @@ TEST(BodyKinds, NameTheJointsOfALimb) {
   EXPECT_EQ(roleOf(made, "left" + before + "Foot" + behind), "hind_hock.L") << "the raised heel";
   EXPECT_EQ(roleOf(made, "left" + before + "Toes" + behind), "hind_end.L") << "what it rests on";
   EXPECT_EQ(parentOf(made, "left" + before + "Toes" + behind), "left" + before + "Foot" + behind);
+}
+
+TEST(BodyKinds, InsectsHaveThreePairsOfLimbsAndSpidersFourOrMore) {
+  for (const auto& [body, reading] : readings()) {
+    SCOPED_TRACE(body);
+    const auto pairs = [&](const char* kind) {
+      const RoledSkeleton made = skeletonOfKind(findBodyKind(kind), reading);
+      return namesWith(made, "left", "UpperLeg").size() + namesWith(made, "left", "UpperArm").size();
+    };
+    EXPECT_EQ(pairs("insect"), 3u);
+    EXPECT_GE(pairs("spider"), 4u);
+  }
 }
 
 TEST(BodyKinds, ALimbOnOneSideIsOnBoth) {

@@ -44,10 +44,16 @@ bool RoleReading::has(std::string_view role) const {
   return index && reading_.joints[*index].present;
 }
 
-bool RoleReading::showsPart(std::string_view part) const {
+double RoleReading::confidence(std::string_view role) const {
+  const std::optional<Index> index = indexOf(weights_->roles, role);
+  return index ? reading_.joints[*index].confidence : 0;
+}
+
+double RoleReading::shareOf(std::string_view part) const {
   const std::optional<Index> index = indexOf(weights_->parts, part);
-  return std::any_of(reading_.samples.begin(), reading_.samples.end(),
-                     [&](const LearnedSample& sample) { return sample.part == index; });
+  const auto count = std::count_if(reading_.samples.begin(), reading_.samples.end(),
+                                   [&](const LearnedSample& sample) { return sample.part == index; });
+  return static_cast<double>(count) / static_cast<double>(reading_.samples.size());
 }
 
 Vec3 RoleReading::position(const RolePosition& at) const {

@@ -22,8 +22,9 @@ class RoleReading {
               const std::map<std::string, Vec3>& known = {});
 
   const AnatomicalFrame& frame() const { return frame_; }
-  bool has(std::string_view role) const;  // false for a role that the weights do not have
-  bool showsPart(std::string_view part) const;  // whether any sample is of it
+  bool has(std::string_view role) const;           // false for a role that the weights do not have
+  double confidence(std::string_view role) const;  // that the body has it; 0 for a role that the weights do not have
+  double shareOf(std::string_view part) const;     // the fraction of the samples that are of it
   // Of a joint, even if the body lacks it. Body space; heights.
   Vec3 position(const RolePosition& at) const;
   double expectedError(const RolePosition& at) const;
