@@ -148,6 +148,11 @@ if [ -d "$characters" ]; then
   table=$($limber evaluate templates "$characters"/*.{glb,gltf} --rigger all --quiet
     $limber evaluate templates --labels "$creatures/MANIFEST.tsv" --rigger all --quiet | tail -n +3)
   table="$table" perl -0pi -e 's/(<!-- made by [^\n]*: riggers -->\n).*(<!-- end of riggers -->)/$1\n$ENV{table}\n$2/s' docs/methods.md
+  meshes=$(dirname "$characters")/meshes
+  foreign=(stool.glb chair_1.glb m2m_{dragon,bird,horse,spider,kaiju}_static.glb rawscan_hermes.ply
+    {cat_low_resolution,hand_lowres,fish_low_resolution}.obj)
+  table=$($limber evaluate handles "${foreign[@]/#/$meshes/}" --counts 8,12,20 --sheet $images/handles_foreign.png --quiet)
+  table="$table" perl -0pi -e 's/(<!-- made by [^\n]*: handles -->\n).*(<!-- end of handles -->)/$1\n![Handles of each model at 8, 12 and 20](images\/handles_foreign.png)\n\n$ENV{table}\n$2/s' docs/methods.md
   curved=(m2m_human_male fox_khronos m2m_bird_eagle quaternius_{spider,dolphin,trex,snake} robot_expressive)
   curved=("${curved[@]/#/$characters/}")
   $limber evaluate templates "${curved[@]/%/.glb}" --rigger curve-skeleton --sheet $images/curve_skeletons.png \

@@ -36,6 +36,7 @@ void addCompletionCommand(CLI::App& program);
 void addMotionEvaluation(CLI::App& evaluate);  // subcommands of evaluate
 void addRetargetingEvaluation(CLI::App& evaluate);
 void addDecompositionEvaluation(CLI::App& evaluate);
+void addHandleEvaluation(CLI::App& evaluate);
 void addTransferEvaluation(CLI::App& evaluate);
 void addVotesEvaluation(CLI::App& evaluate);
 

@@ -516,6 +516,7 @@ void addEvaluateCommand(CLI::App& program) {
   addMotionEvaluation(*evaluate);
   addRetargetingEvaluation(*evaluate);
   addDecompositionEvaluation(*evaluate);
+  addHandleEvaluation(*evaluate);
   addTransferEvaluation(*evaluate);
 }
 

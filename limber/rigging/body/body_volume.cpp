@@ -69,7 +69,7 @@ BodyVolume measureBody(const TriMesh& mesh) {
 }
 
 // One end after the other: the node farthest from the middle, then the one farthest from the paths to all ends so far.
-std::vector<Vec3> limbTips(const BodyVolume& body) {
+std::vector<LimbTip> limbTips(const BodyVolume& body) {
   const SignedDistance& distance = *body.distance;
   InsideGraph graph(distance);
   const std::vector<std::size_t> inside = graph.insideNodes();
@@ -82,7 +82,7 @@ std::vector<Vec3> limbTips(const BodyVolume& body) {
   std::vector<std::size_t> from;
   graph.spreadToAll(root, inside, distances, from);
   std::vector<std::size_t> sources = {root};
-  std::vector<Vec3> tips;
+  std::vector<LimbTip> tips;
   while (tips.size() < kMaxTips) {
     graph.spread(sources, distances, from);
     std::size_t tip = root;
@@ -90,9 +90,14 @@ std::vector<Vec3> limbTips(const BodyVolume& body) {
       if (std::isfinite(distances[node]) && distances[node] > distances[tip]) tip = node;
     }
     if (distances[tip] < kMinReach) break;
-    tips.push_back(distance.position(tip));
+    tips.push_back({distance.position(tip), distances[tip], 0});
     sources.clear();
-    for (std::size_t node = tip; distances[node] > 0; node = from[node]) sources.push_back(node);
+    std::size_t node = tip;
+    for (; distances[node] > 0; node = from[node]) {
+      sources.push_back(node);
+      tips.back().depth = std::max(tips.back().depth, graph.depth(node));
+    }
+    tips.back().depth = std::max(tips.back().depth, graph.depth(node));
   }
   return tips;
 }

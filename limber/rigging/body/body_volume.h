@@ -27,8 +27,15 @@ struct BodyVolume {
 // O(#F log #F), and a grid of 80 cells along the longest side.
 BodyVolume measureBody(const TriMesh& mesh);
 
+// An end of a limb, or of a bump.
+struct LimbTip {
+  Vec3 position = Vec3::Zero();
+  double reach = 0;  // of the path to it from the paths to the tips before it; the first from the middle
+  double depth = 0;  // the greatest along that path: about 0.5 reach and more for what is no longer than it is thick
+};
+
 // The ends of limbs, each as far from the middle, inside the model, as it goes thereabouts. Farthest first, by the path
 // to the ends before it and the paths there.
-std::vector<Vec3> limbTips(const BodyVolume& body);
+std::vector<LimbTip> limbTips(const BodyVolume& body);
 
 }  // namespace limber

@@ -29,7 +29,13 @@ double insideFraction(const BodyVolume& body) {
 
 TEST(BodyVolume, FindsTheEndsOfLimbs) {
   const testing::CapsulePerson person = testing::capsulePerson(0);
-  const std::vector<Vec3> tips = limbTips(measureBody(person.mesh));
+  std::vector<Vec3> tips;
+  for (const LimbTip& tip : limbTips(measureBody(person.mesh))) {
+    tips.push_back(tip.position);
+    const bool isHand = std::abs(tip.position.x()) > person.hand.x();
+    EXPECT_TRUE(!isHand || tip.reach > 3 * tip.depth) << "slender";
+    EXPECT_GT(tip.depth, 0);
+  }
   for (const double side : {1.0, -1.0}) {
     EXPECT_LT(nearestOf(tips, {side * (person.hand.x() + 0.1), person.hand.y(), 0}), 0.04);
     EXPECT_LT(nearestOf(tips, {side * 0.095, 0.02, 0.12}), 0.05);

@@ -119,8 +119,8 @@ class QuadrupedMover {
   void tail(const QuadrupedJoints& joints) {
     const Vec3 root = positions_[joints.tail];
     std::optional<Vec3> end;
-    for (const Vec3& tip : limbTips(body_)) {
-      const Vec3 position = frame_.toBody(tip);
+    for (const LimbTip& tip : limbTips(body_)) {
+      const Vec3 position = frame_.toBody(tip.position);
       if (std::abs(position.x()) > kTailAside || position.y() < kLowestTail || position.z() > root.z()) continue;
       if (!end || (position - root).norm() > (*end - root).norm()) end = position;
     }
