@@ -12,6 +12,11 @@ from evaluate import confidence, kind_right
 
 ALLOWED_WRONG = 0.02
 THRESHOLDS = np.arange(0.5, 0.96, 0.05)
+NO_CORRECTION = 0.1  # of 1, within which a number is left at 1: folds trained for less time than all makers' networks
+
+
+def _correction(value):
+    return 1.0 if abs(value - 1) < NO_CORRECTION else round(value, 4)
 
 
 def calibrate(rows):
@@ -29,7 +34,7 @@ def calibrate(rows):
     wrong = [1 - right[sure >= t].mean() if (sure >= t).any() else 1 for t in THRESHOLDS]
     threshold = next((t for t, fraction in zip(THRESHOLDS, wrong) if fraction <= ALLOWED_WRONG), THRESHOLDS[-1])
     return {
-        "plan_temperature": round(temperature, 4), "error_factor": round(float(ratios.mean()), 4),
+        "plan_temperature": _correction(temperature), "error_factor": _correction(float(ratios.mean())),
         "sure_threshold": round(float(threshold), 2), "bodies": len(rows),
         "makers": sorted({row["maker"] for row in rows}),
     }

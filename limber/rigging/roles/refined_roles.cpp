@@ -13,8 +13,10 @@ namespace limber {
 
 namespace {
 
-constexpr double kLandmarkReach = 2;  // expected errors that a landmark may lie from the reading
-constexpr double kMinReach = 0.03;    // heights
+// Expected errors that a landmark may lie from the reading. On makers left out, errors over what is expected of them are
+// 1.3 times as large on four legs as on two.
+constexpr double kReachOnTwo = 2, kReachOnFour = 2.5;
+constexpr double kMinReach = 0.03;  // heights
 
 void moveFingers(const std::string& side, const Vec3& displacement, RoleReading& reading) {
   for (const std::string& role : reading.roles()) {
@@ -40,11 +42,12 @@ void refineRoles(std::string_view plan, const BodyVolume& body, RoleReading& rea
   } else {
     refineHumanoid(made.skeleton, body, reading.frame(), pins, positions);
   }
+  const double reach = plan == "four" ? kReachOnFour : kReachOnTwo;
   for (std::size_t j = 0; j < joints.size(); ++j) {
     if (joints[j].role == TemplateRole::kTip || pins[j] || !made.roles[j] || !made.roles[j]->isRole()) continue;
     const std::string& role = made.roles[j]->from;
     const Vec3 displacement = positions[j] - read[j];
-    if (displacement.norm() > std::max(kLandmarkReach * reading.expectedError(*made.roles[j]), kMinReach)) continue;
+    if (displacement.norm() > std::max(reach * reading.expectedError(*made.roles[j]), kMinReach)) continue;
     reading.move(role, displacement);
     if (role.starts_with("fore_end")) moveFingers(role.substr(role.size() - 2), displacement, reading);
   }
