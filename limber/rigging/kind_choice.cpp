@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kLegsOfSpiders = 7;  // counted, from which on a body has eight
 constexpr double kDoubtfulJoint = 0.05;    // expected error, heights
-constexpr double kMinShare = 0.008;        // of the samples, that are of a limb's further parts; fewer are mistaken
+constexpr double kMinFraction = 0.008;     // of the samples, that are of a limb's further parts; fewer are mistaken
 constexpr double kMissing = 100;           // above any error
 
 bool isFirstOfLimb(std::string_view role) {
@@ -21,8 +21,8 @@ bool isFirstOfLimb(std::string_view role) {
   return name.segment == "base" || name.segment == "upper";
 }
 
-// Where a limb is cut off, a little of its first bone is mostly left, and the networks put all of its joints there. Hardly a
-// sample then is of its further parts. Toys have limbs of one bone: no further joints are read either.
+// Where a limb is cut off, a little of its first bone is mostly left, and the networks put all of its joints there.
+// Hardly a sample then is of its further parts. Toys have limbs of one bone: no further joints are read either.
 bool isThere(const TemplateLimb& limb, const RoledSkeleton& made, const RoleReading& reading) {
   bool hasRole = false, isRead = false;
   std::set<std::string> further;  // parts
@@ -38,9 +38,9 @@ bool isThere(const TemplateLimb& limb, const RoledSkeleton& made, const RoleRead
     further.insert(partOfRole(from));
   }
   if (!isRead || further.empty()) return !hasRole || isRead;
-  double share = 0;
-  for (const std::string& part : further) share += reading.shareOf(part);
-  return share >= kMinShare;
+  double fraction = 0;
+  for (const std::string& part : further) fraction += reading.fractionOf(part);
+  return fraction >= kMinFraction;
 }
 
 // What a plan gets where the user leaves the choice; null where it gets handles.

@@ -150,6 +150,8 @@ def do_export(options):
         source = source or run_folder(options, kind)
         if is_weights_file(source) or is_trained(source):
             networks[kind], cost[kind] = network_of(source, kind), trained_for(source, kind)
+    if options.reading and is_weights_file(options.reading):
+        raise SystemExit(f"{options.reading} is exported already: --reading is a run (train --start {options.reading})")
     if "reading" not in networks:
         raise SystemExit("no network is trained: learn.py train reading")
     calibration = calibration_of(options)

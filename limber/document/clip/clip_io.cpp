@@ -31,7 +31,7 @@ constexpr const char *kTranslation = "translation", *kRotation = "rotation", *kS
 // Of a length or in radians: the same but for rounding. Inverse bind matrices are rounded where the joint is, so that
 // the length of a short bone is off by some 1e-6 of it.
 constexpr double kSameTransform = 1e-5;
-constexpr float kStanding = 1e-6f;       // likewise, of a node's own value
+constexpr float kStanding = 1e-6f;  // likewise, of a node's own value
 
 template <typename Value>
 void addKey(Track<Value>& track, float time, const Value& value) {

@@ -21,7 +21,7 @@ namespace limber {
 namespace {
 
 constexpr double kMinReach = 0.15;       // longest sides
-constexpr double kMinSlenderness = 2.5;  // the reach of a limb's end over the greatest depth on the way there
+constexpr double kMinSlenderness = 2.5;  // the reach of a limb's end over the greatest depth along the path to it
 constexpr float kVisibleWeight = 0.1f;   // a weight by which a handle visibly moves a vertex
 
 Index strongestOf(const SkinWeights& weights, Index v) {

@@ -1,4 +1,4 @@
-// How well handles suit a model, told from the model alone.
+// How well handles suit a model, measured from the model alone.
 #pragma once
 
 #include <filesystem>
@@ -16,8 +16,8 @@ namespace limber {
 
 // inside          fraction of the handles that lie within the surface (JointPlacement)
 // idle            handles that no vertex follows by a tenth
-// coveredEnds     of the ends of limbs, those whose vertices follow one handle most that is neither the root nor that of
-//                 another end
+// coveredEnds     of the ends of limbs, those whose vertices follow one handle most that is neither the root nor that
+//                 of another end
 // strayParents    handles whose region touches no part of their parent's region. A region is the vertices that follow a
 //                 handle more than any other; pieces of the surface touch where they are nearest (pieceLinks)
 // overAir         fraction of all weight, by area, that is cut off from a handle's region (WeightQuality::islands)
@@ -27,7 +27,8 @@ struct HandleQuality {
 };
 
 // The ends of the model's limbs by the longest paths through its inside (limbTips), of those that are longer than what
-// they leave is thick: another way than that by which handles are placed. None where nothing lies inside. In the model's space. Cost: that of measureBody.
+// they leave is thick: another method than that which positions handles. None where nothing lies inside. In the model's
+// space. Cost: that of measureBody.
 std::vector<Vec3> limbEndsOf(const TriMesh& mesh);
 
 // model  welded (weldedModel)
@@ -40,7 +41,7 @@ struct HandleTableRow {
   HandleQuality quality;
 };
 
-// Gives the asset so many handles, in place of any rig that it has.
+// Gives the asset so many handles, instead of any rig that it has.
 using HandleRigger = std::function<void(Asset& asset, Index count)>;
 // Is shown the asset of each row with its handles.
 using HandlesSeen = std::function<void(const Asset&)>;

@@ -1,4 +1,4 @@
-// A figure of four limbs with a handle in each, and the same spoiled in one way after another.
+// A figure of four limbs with a handle in each, and the same with one fault after another.
 #include "limber/evaluate/rig/handle_quality.h"
 
 #include <algorithm>
@@ -88,7 +88,7 @@ TEST(HandleQuality, EachFaultIsSeen) {
   rename(shared, 2, 1);
   EXPECT_EQ(qualityOf(shared).coveredEnds, 2u);
 
-  SkinnedModel stray = figure();  // one limb hangs on another
+  SkinnedModel stray = figure();  // one limb is a child of another
   stray.skeleton.joints[4].parent = 1;
   stray.skeleton.joints[4].rest.translation -= stray.skeleton.joints[1].rest.translation;
   EXPECT_EQ(qualityOf(stray).strayParents, 1u);

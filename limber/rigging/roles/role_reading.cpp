@@ -49,7 +49,7 @@ double RoleReading::confidence(std::string_view role) const {
   return index ? reading_.joints[*index].confidence : 0;
 }
 
-double RoleReading::shareOf(std::string_view part) const {
+double RoleReading::fractionOf(std::string_view part) const {
   const std::optional<Index> index = indexOf(weights_->parts, part);
   const auto count = std::count_if(reading_.samples.begin(), reading_.samples.end(),
                                    [&](const LearnedSample& sample) { return sample.part == index; });

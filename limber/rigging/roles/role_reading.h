@@ -24,7 +24,7 @@ class RoleReading {
   const AnatomicalFrame& frame() const { return frame_; }
   bool has(std::string_view role) const;           // false for a role that the weights do not have
   double confidence(std::string_view role) const;  // that the body has it; 0 for a role that the weights do not have
-  double shareOf(std::string_view part) const;     // the fraction of the samples that are of it
+  double fractionOf(std::string_view part) const;  // the fraction of the samples that are of it
   // Of a joint, even if the body lacks it. Body space; heights.
   Vec3 position(const RolePosition& at) const;
   double expectedError(const RolePosition& at) const;
