@@ -90,7 +90,7 @@ TEST_F(CliAdapter, AProgramIsHandedTheWeightsThatItTakes) {
                                  R"(}, "steps": [{"command": ["cp", "{input}", "{output}"]}]})");
   };
   const auto rigBy = [&](const char* skinning, const char* output) {
-    const Result rig = run({"rig", "robot.glb", "--rigger", "sphere-mesh", "--handles", "6", "--adapter-folder", "mine",
+    const Result rig = run({"rig", "robot.glb", "--rigger", "sphere-mesh", "--handles", "9", "--adapter-folder", "mine",
                             "--skinning", skinning, "-o", output, "--quiet"});
     EXPECT_EQ(rig.code, 0) << rig.error;
   };

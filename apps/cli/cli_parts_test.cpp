@@ -46,10 +46,10 @@ TEST_F(Cli, APartsFileNeverTakesThePlaceOfTheModel) {
 
 TEST_F(Cli, FilesOfPartsHaveNamesThatEveryFileSystemTakes) {
   ASSERT_EQ(run({"sample", "quadruped", "-o", "fox.glb", "--quiet"}).code, 0);
-  ASSERT_EQ(run({"rig", "fox.glb", "--handles", "3", "-o", "rigged.gltf", "--quiet"}).code, 0);
+  ASSERT_EQ(run({"rig", "fox.glb", "--handles", "4", "-o", "rigged.gltf", "--quiet"}).code, 0);
   std::string text = content("rigged.gltf");
   for (const auto& [handle, name] : std::vector<std::pair<std::string, std::string>>{
-           {"handle_00", "Bone"}, {"handle_01.L", "bone"}, {"handle_01.R", "a<b>|c?*\\\"d"}}) {
+           {"handle_00", "Bone"}, {"handle_02.L", "bone"}, {"handle_02.R", "a<b>|c?*\\\"d"}}) {
     const std::size_t at = text.find("\"" + handle + "\"");
     ASSERT_NE(at, std::string::npos);
     text.replace(at + 1, handle.size(), name);

@@ -80,14 +80,14 @@ Index suggestedFrom() {
 }
 
 std::vector<HandleSuggestion> suggestHandles(const SphereMesh& spheres) {
-  return suggestHandles(spheres.errors(suggestedFrom()), spheres.maxSpheres());
+  return suggestHandles(spheres.errors(suggestedFrom()), spheres.maxSpheres(), spheres.fewestForLimbs());
 }
 
-std::vector<HandleSuggestion> suggestHandles(std::vector<double> errors, Index maxHandles) {
+std::vector<HandleSuggestion> suggestHandles(std::vector<double> errors, Index maxHandles, Index fewest) {
   const ErrorCurve curve(std::move(errors));
   std::vector<HandleSuggestion> steps;
   const Index most = std::min(kMaxSuggested, static_cast<Index>(curve.most() / kNeighborhood));
-  for (Index count = kFewestSuggested; count <= most; ++count) {
+  for (Index count = std::max(kFewestSuggested, fewest); count <= most; ++count) {
     if (!curve.isStep(count)) continue;
     const double clearness = curve.bend(count) - distanceFromUsual(count);
     steps.push_back({count, 1 / (1 + std::exp(-2 * clearness))});
@@ -101,7 +101,7 @@ std::vector<HandleSuggestion> suggestHandles(std::vector<double> errors, Index m
     });
     if (isNew && suggestions.size() < kMaxListed) suggestions.push_back(step);
   }
-  if (suggestions.empty()) suggestions.push_back({std::min(kUsual, maxHandles), 0});
+  if (suggestions.empty()) suggestions.push_back({std::min(std::max(kUsual, std::min(fewest, most)), maxHandles), 0});
   return suggestions;
 }
 

@@ -156,7 +156,7 @@ TEST(Session, FailuresAndCancellationLeaveEverythingAsItWas) {
 }
 
 TEST(Session, IkPullsTheLimbAndTargetsHold) {
-  Session session = opened();
+  Session session = opened(30);
   const Skeleton& skeleton = session.state().rig->skeleton();
   Index hand = kNoIndex;  // a joint with a limb of at least two joints, and that far from its end
   for (Index j = 0; j < skeleton.jointCount(); ++j) {

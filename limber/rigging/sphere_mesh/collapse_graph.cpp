@@ -7,11 +7,12 @@
 
 namespace limber {
 
-CollapseGraph::CollapseGraph(std::span<const GraphEdge> edges, std::vector<std::uint8_t> single)
+CollapseGraph::CollapseGraph(std::span<const GraphEdge> edges, std::span<const Border> borders,
+                             std::vector<std::uint8_t> single)
     : single_(std::move(single)), blocks_(single_.size()) {
   edges_.reserve(edges.size());
   for (const GraphEdge& e : edges) {
-    edges_.push_back({e, 0});
+    edges_.push_back({e, borders.empty() ? 0 : borders[edges_.size()], 0});
     ++blocks_[e.from].size;
     if (nodeOf(e.to) != e.from) ++blocks_[nodeOf(e.to)].size;
   }
@@ -55,9 +56,10 @@ void CollapseGraph::merge(Index e, Index kept, const MonotoneQueue& keys) {
   single_[kept] = operation_.toSingle;
 }
 
-void CollapseGraph::kill(Index e) {
+void CollapseGraph::kill(Index e, Index joined) {
   edges_[e].from = kNoIndex;
-  dead_.push_back(e);
+  dead_.push_back({e, joined, edges_[e].border});
+  if (joined != kNoIndex) edges_[joined].border += edges_[e].border;
 }
 
 EdgeEnd CollapseGraph::retarget(EdgeEnd to, bool fromGone) const {
@@ -127,7 +129,7 @@ void CollapseGraph::gather(Index source) {
     const EdgeEnd target = retarget(to, fromGone);
     if (Index* const holder = find(target)) {
       const Index loser = keys_->key(*holder) >= keys_->key(e) ? e : *holder;
-      kill(loser);
+      kill(loser, loser == e ? *holder : e);
       if (!isInside) unlink(node, loser);
       if (loser == e) continue;
       *holder = e;
@@ -170,7 +172,7 @@ void CollapseGraph::joinHub(Index e, EdgeEnd to) {
   const Index twin = findEdge(kept, target);
   if (twin != kNoIndex && twin != e) {
     const Index loser = keys_->key(twin) >= keys_->key(e) ? e : twin;
-    kill(loser);
+    kill(loser, loser == e ? twin : e);
     if (!isInside) unlink(node, loser);
     if (loser == e) return;
   }

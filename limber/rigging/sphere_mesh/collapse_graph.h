@@ -32,17 +32,31 @@ struct GraphEdge {
   EdgeEnd to = 0;
 };
 
+// The length of the border between what two neighbours represent, on each side of the mirror plane, in 2^-20 of the
+// model's longest side: whole numbers, so that sums are exact in any order.
+using Border = std::uint32_t;
+inline constexpr double kBorderUnit = 0x1p-20;
+
+// An edge that is no more: between nodes that merged, or because it became one with another edge.
+struct DeadEdge {
+  Index edge = 0;
+  Index joined = kNoIndex;  // the edge that it became one with, whose border has grown by its own
+  Border border = 0;        // when it went
+};
+
 // Between two nodes at most one edge that crosses is kept, and one that does not. Neighbours are blocks of links in one
 // pool; block sizes are powers of two, and freed blocks are used again. Blocks of more than kHub links are not kept up
 // to date when a neighbour merges, which would cost their length each time: their links are read through the edge
 // itself, and dead ones are dropped when the block is next rewritten. A merge costs O(links of the node with fewer).
 class CollapseGraph {
  public:
-  // edges  no duplicates; an edge to a single node does not cross
-  CollapseGraph(std::span<const GraphEdge> edges, std::vector<std::uint8_t> single);
+  // edges    no duplicates; an edge to a single node does not cross
+  // borders  per edge, or empty: none has any
+  CollapseGraph(std::span<const GraphEdge> edges, std::span<const Border> borders, std::vector<std::uint8_t> single);
 
   // With a number of the caller's that goes with each edge, at first 0.
   struct Edge : GraphEdge {
+    Border border = 0;
     Index note = 0;
   };
   const Edge& edge(Index e) const { return edges_[e]; }
@@ -56,7 +70,7 @@ class CollapseGraph {
   void merge(Index e, Index kept, const MonotoneQueue& keys);
 
   // After merge(): the edges that are no more, e first; and living edges that have a new end or joined a single node.
-  std::span<const Index> dead() const { return dead_; }
+  std::span<const DeadEdge> dead() const { return dead_; }
   std::span<const Index> touched() const { return touched_; }
 
  private:
@@ -99,7 +113,7 @@ class CollapseGraph {
   // Where a link of kept or gone to `to` leads after the merge.
   EdgeEnd retarget(EdgeEnd to, bool fromGone) const;
   bool inside(Index node) const { return node == operation_.kept || node == operation_.gone; }
-  void kill(Index e);
+  void kill(Index e, Index joined = kNoIndex);
 
   Block allocate(Index size);
   void release(const Block& block) { free_[block.sizeClass].push_back(block.begin); }
@@ -121,7 +135,8 @@ class CollapseGraph {
   bool marking_ = false;     // in this merge
   std::vector<Mark> marks_;  // per edge end: merge number `time` met it as merged_[slot]
   Index time_ = 0;
-  std::vector<Index> dead_, touched_;
+  std::vector<DeadEdge> dead_;
+  std::vector<Index> touched_;
 };
 
 }  // namespace limber

@@ -92,7 +92,7 @@ Case randomCase(Index nodes, Index edgeCount, Index hubs, double singles, std::u
 }
 
 void collapseRandomly(const Case& start, std::uint64_t seed) {
-  CollapseGraph graph(start.edges, start.single);
+  CollapseGraph graph(start.edges, {}, start.single);
   PlainGraph plain(start.edges, start.single);
   const Index count = static_cast<Index>(start.edges.size());
   TestRandom random(seed);
@@ -109,9 +109,9 @@ void collapseRandomly(const Case& start, std::uint64_t seed) {
         graph.linkCount(b) > graph.linkCount(a) || (random.unit() < 0.3 && graph.linkCount(a) < 40) ? b : a;
     plain.merge(ends, kept);
     graph.merge(e, kept, heap);
-    for (const Index dead : graph.dead()) {
-      ASSERT_FALSE(graph.alive(dead));
-      heap.remove(dead);
+    for (const DeadEdge& dead : graph.dead()) {
+      ASSERT_FALSE(graph.alive(dead.edge));
+      heap.remove(dead.edge);
       ++died;
     }
     for (const Index touched : graph.touched()) {
@@ -162,13 +162,17 @@ TEST(CollapseGraph, ContractsHubsThatShrink) {
 
 TEST(CollapseGraph, OfEdgesThatBecomeOneTheGreaterKeyStays) {
   const std::vector<GraphEdge> triangle = {{0, makeEnd(1, false)}, {1, makeEnd(2, false)}, {0, makeEnd(2, false)}};
-  CollapseGraph graph(triangle, {1, 1, 1});
+  CollapseGraph graph(triangle, std::vector<Border>{7, 20, 300}, {1, 1, 1});
   MonotoneQueue heap;
   heap.fill({1, 5, 3});
   graph.merge(0, 0, heap);
   EXPECT_TRUE(graph.alive(1));
   EXPECT_FALSE(graph.alive(2));
-  EXPECT_EQ(graph.dead().size(), 2u);
+  ASSERT_EQ(graph.dead().size(), 2u);
+  EXPECT_EQ(graph.dead()[0].joined, kNoIndex);  // between the two that are one now
+  EXPECT_EQ(graph.dead()[1].joined, 1u);
+  EXPECT_EQ(graph.dead()[1].border, 300u);
+  EXPECT_EQ(graph.edge(1).border, 320u);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "limber/core/parallel.h"
 #include "limber/rigging/sphere_mesh/edge_heap.h"
+#include "limber/rigging/sphere_mesh/limb_ends.h"
 #include "limber/rigging/sphere_mesh/monotone_queue.h"
 
 namespace limber {
@@ -48,6 +49,14 @@ class Collapser {
     return g.note < std::max(clusters_[g.from].changed, clusters_[nodeOf(g.to)].changed);
   }
   void refresh(Index e);
+  void findEnds();
+  // What merging e makes of the ends of limbs: that of the joint, and the cost of those that are lost.
+  struct JointEnd {
+    Index end = kNoIndex;
+    double cost = 0;
+  };
+  JointEnd jointEnd(Index e) const;
+  void loseEnds(const Merge& m, Index end);
   void fetchClusters(Index e) const;
   // Whether merging e takes one sphere away, not two.
   bool takesOne(Index e) const {
@@ -68,10 +77,18 @@ class Collapser {
   CollapseGraph graph_;  // an edge's note: merges done when its key was last computed
   bool symmetric_ = false;
   MonotoneQueue queue_;
-  EdgeHeap bridgeHeap_;              // the edges that take one sphere away; only filled with symmetry
-  std::vector<Index> madeBy_;        // per node: the last merge that kept it
-  Index count_ = 0;                  // spheres left
-  Index lastBridgeEdge_ = kNoIndex;  // that the last of sequence_.bridges was made for, and when
+  EdgeHeap bridgeHeap_;        // the edges that take one sphere away; only filled with symmetry
+  std::vector<Index> madeBy_;  // per node: the last merge that kept it
+  Index count_ = 0;            // spheres left
+  std::vector<Index> endOf_;   // per node: the end of a limb that it is of, or kNoIndex; empty until they are known
+  struct End {
+    double length = 0;
+    double cost = 0;  // of losing it
+    bool isOnPlane = false;
+  };
+  std::vector<End> ends_;
+  double costOfEnds_ = 0, area_ = 0;  // as in CollapseInput
+  Index lastBridgeEdge_ = kNoIndex;   // that the last of sequence_.bridges was made for, and when
   Index lastBridgeTime_ = 0;
 };
 
@@ -79,7 +96,7 @@ Collapser::Collapser(const CollapseInput& input, Progress& progress)
     : progress_(progress),
       clusters_(input.quadrics.size()),
       moments_(input.moments),
-      graph_(input.edges, input.single) {
+      graph_(input.edges, input.borders, input.single) {
   const std::size_t nodes = clusters_.size();
   for (std::size_t node = 0; node < nodes; ++node) clusters_[node].quadric = input.quadrics[node];
   sequence_.single = input.single;
@@ -87,6 +104,8 @@ Collapser::Collapser(const CollapseInput& input, Progress& progress)
   for (const std::uint8_t single : input.single) count_ += single ? 1 : 2;
   sequence_.initialCount = count_;
   symmetric_ = count_ > nodes;
+  area_ = input.area;
+  costOfEnds_ = input.costOfEnds;
   sequence_.merges.reserve(nodes);
   sequence_.deadEdges.reserve(input.edges.size());
   sequence_.absorbedBy.assign(nodes, kNoIndex);
@@ -128,10 +147,68 @@ float Collapser::evaluate(Index e) const {
 }
 
 void Collapser::refresh(Index e) {
-  const float key = evaluate(e);
+  const float key = evaluate(e) + static_cast<float>(jointEnd(e).cost);
   graph_.setNote(e, static_cast<Index>(sequence_.merges.size()));
   queue_.raise(e, key);
   if (symmetric_ && bridgeHeap_.contains(e)) bridgeHeap_.update(e, queue_.key(e));
+}
+
+// The longer a limb, the more is lost with its end. Keys only grow, as the queue asks: what is lost stays lost.
+void Collapser::findEnds() {
+  SphereGraph graph;
+  std::vector<Index> numbers(clusters_.size(), kNoIndex), nodes;
+  for (Index node = 0; node < clusters_.size(); ++node) {
+    if (sequence_.absorbedBy[node] != kNoIndex) continue;
+    numbers[node] = static_cast<Index>(nodes.size());
+    nodes.push_back(node);
+    graph.centers.push_back(boundedMinimum(clusters_[node].quadric, moments_[node]).center.cast<float>());
+    graph.areas.push_back(clusters_[node].quadric.weight() * area_);
+    graph.single.push_back(graph_.single(node));
+  }
+  for (Index e = 0; e < sequence_.edges.size(); ++e) {
+    if (!graph_.alive(e)) continue;
+    const GraphEdge& edge = graph_.edge(e);
+    graph.edges.push_back({numbers[edge.from], makeEnd(numbers[nodeOf(edge.to)], crossesOf(edge.to))});
+  }
+  endOf_.assign(clusters_.size(), kNoIndex);
+  for (const LimbEnd& end : limbEnds(graph)) {
+    for (const Index node : end.nodes) endOf_[nodes[node]] = static_cast<Index>(ends_.size());
+    const double squared = end.length * end.length;
+    ends_.push_back({end.length, costOfEnds_ * squared * squared, end.isOnPlane});
+  }
+  for (Index e = 0; e < sequence_.edges.size(); ++e) {
+    if (graph_.alive(e) && jointEnd(e).cost > 0) refresh(e);
+  }
+}
+
+// The joint of two ends is still that of the longer limb: an ear that goes into the head. With anything else an end is
+// lost, as is one that meets its own image.
+Collapser::JointEnd Collapser::jointEnd(Index e) const {
+  if (ends_.empty()) return {};
+  const GraphEdge& g = graph_.edge(e);
+  Index longer = endOf_[g.from], other = endOf_[nodeOf(g.to)];
+  const auto costOf = [&](Index end) { return end == kNoIndex ? 0 : ends_[end].cost; };
+  if (longer == other) {
+    if (longer == kNoIndex || !crossesOf(g.to) || ends_[longer].isOnPlane) return {longer, 0};
+    return {kNoIndex, costOf(longer)};
+  }
+  if (costOf(longer) < costOf(other)) std::swap(longer, other);
+  if (other == kNoIndex) return {kNoIndex, costOf(longer)};
+  if (crossesOf(g.to) && !ends_[longer].isOnPlane) return {kNoIndex, costOf(longer) + costOf(other)};
+  return {longer, costOf(other)};
+}
+
+// `end` is what the joint of a merge is of.
+void Collapser::loseEnds(const Merge& m, Index end) {
+  for (const Index node : {m.kept, m.gone}) {
+    const Index lost = endOf_[node];
+    endOf_[node] = kNoIndex;
+    if (lost == kNoIndex || lost == end) continue;
+    if (std::find(endOf_.begin(), endOf_.end(), lost) != endOf_.end()) continue;  // others have it still
+    const Index countBefore = m.countAfter + (m.bridge == kNoIndex ? 1 : 2);
+    sequence_.lostEnds.push_back({countBefore, static_cast<float>(ends_[lost].length)});
+  }
+  endOf_[m.kept] = end;
 }
 
 // Most of the time of a large collapse would go into waiting for these.
@@ -148,6 +225,7 @@ CollapseSequence Collapser::run() {
   const double total = count_;
   for (std::size_t step = 0; !queue_.empty(); ++step) {
     if (step % 16384 == 0) progress_.update(1 - count_ / total);
+    if (endOf_.empty() && count_ <= kEndsKnownFrom) findEnds();
     const Index e = queue_.top([this](Index soon) { __builtin_prefetch(&graph_.edge(soon)); });
     fetchClusters(queue_.next());
     if (stale(e)) {
@@ -188,6 +266,7 @@ void Collapser::merge(Index e) {
   m.deadBegin = static_cast<Index>(sequence_.deadEdges.size());
   m.error = queue_.key(e);
 
+  if (!ends_.empty()) loseEnds(m, jointEnd(e).end);
   SphereQuadric& quadric = clusters_[m.kept].quadric;
   PartMoments& moments = moments_[m.kept];
   quadric = jointQuadric(m.kept, m.gone, m.crosses);
@@ -201,9 +280,9 @@ void Collapser::merge(Index e) {
 
   graph_.merge(e, m.kept, queue_);
   m.single = graph_.single(m.kept);
-  for (const Index dead : graph_.dead()) {
-    queue_.remove(dead);
-    if (symmetric_ && bridgeHeap_.contains(dead)) bridgeHeap_.remove(dead);
+  for (const DeadEdge& dead : graph_.dead()) {
+    queue_.remove(dead.edge);
+    if (symmetric_ && bridgeHeap_.contains(dead.edge)) bridgeHeap_.remove(dead.edge);
     sequence_.deadEdges.push_back(dead);
   }
   if (symmetric_) {

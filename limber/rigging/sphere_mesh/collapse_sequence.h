@@ -17,6 +17,9 @@ struct CollapseInput {
   std::vector<PartMoments> moments;     // per node, likewise
   std::vector<std::uint8_t> single;     // per node: 1 where it is one sphere
   std::vector<GraphEdge> edges;         // connect everything, images included
+  std::vector<Border> borders;          // per edge; empty where there are none
+  double costOfEnds = 8;                // of losing the end of a limb: this, by the fourth power of the limb's length
+  double area = 0;                      // of the surface, which all together weighs 1; 0 where there is none
 };
 
 // One step. Two single nodes, or a pair and its image: one sphere less. Two pairs, or a pair and a single node: two
@@ -46,20 +49,32 @@ struct Bridge {
   float weight = 0;
 };
 
+// The end of a limb (limbEnds) that no sphere has for itself from a merge on.
+struct LostEnd {
+  Index countBefore = 0;  // spheres until then
+  float length = 0;       // of the limb, in the collapse's space
+};
+
 struct CollapseSequence {
   Index initialCount = 0;            // spheres before the first merge
   std::vector<std::uint8_t> single;  // per node, before the first merge
   std::vector<GraphEdge> edges;      // before the first merge
   std::vector<Merge> merges;
-  std::vector<Index> deadEdges;   // every edge, in the order in which they went
-  std::vector<Index> absorbedBy;  // per node: the merge in which it was `gone`, kNoIndex for the last one
+  std::vector<DeadEdge> deadEdges;  // every edge, in the order in which they went
+  std::vector<Index> absorbedBy;    // per node: the merge in which it was `gone`, kNoIndex for the last one
   std::vector<Bridge> bridges;
+  std::vector<LostEnd> lostEnds;  // in the order in which they were lost
 };
 
+// Spheres at which the ends of limbs are found: the surface is still seen as it is, and few enough to be quick.
+inline constexpr Index kEndsKnownFrom = 1024;
+
 // Greedy: each merge is, of all edges at that moment, the one with the least error of the joint quadric (as a float;
-// ties by edge index). Errors only grow as quadrics are added, so an edge's error from before a neighbour merged is a
-// lower bound of what it is now: an edge is evaluated again only when it reaches the top of the queue. Cost: O(#edges
-// log #edges) time; about 250 bytes a node.
+// ties by edge index). From kEndsKnownFrom spheres on, a merge of the outer part of a limb (limbEnds) with anything else
+// costs more, by the fourth power of the limb's length: legs, wings, a head keep a sphere at their ends before their
+// middles do, fingers and ears after them. Errors only grow as quadrics are added, so an edge's error from before a
+// neighbour merged is a lower bound of what it is now: an edge is evaluated again only when it reaches the top of the
+// queue. Cost: O(#edges log #edges) time; about 270 bytes a node.
 CollapseSequence collapse(const CollapseInput& input, Progress& progress);
 
 }  // namespace limber

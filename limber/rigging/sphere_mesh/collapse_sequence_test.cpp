@@ -146,7 +146,9 @@ CollapseInput inputOf(const TriMesh& mesh, bool symmetric) {
       CollapseFrame::of(mesh, mirror ? std::optional<MirrorPlane>(mirror->plane) : std::nullopt);
   std::vector<Vec3f> points;
   for (const Vec3f& p : mesh.positions) points.push_back(frame.toCollapse(p));
-  return collapseStart(mesh, points, surfaceEdges(mesh), mirror).input;
+  CollapseInput input = collapseStart(mesh, points, surfaceEdges(mesh), mirror).input;
+  input.costOfEnds = 0;
+  return input;
 }
 
 // Returns how many spheres the bound of their radius has made smaller.

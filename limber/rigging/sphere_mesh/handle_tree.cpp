@@ -1,9 +1,9 @@
 #include "limber/rigging/sphere_mesh/handle_tree.h"
 
 #include <algorithm>
+#include <tuple>
 
 #include "limber/core/disjoint_sets.h"
-#include "limber/geometry/surface/piece_links.h"
 
 namespace limber {
 
@@ -13,11 +13,14 @@ namespace {
 class TreeMaker {
  public:
   explicit TreeMaker(const SphereMeshLevel& level)
-      : level_(level), sets_(level.spheres.size()), neighbors_(level.spheres.size()) {}
+      : level_(level),
+        sets_(level.spheres.size()),
+        besidePlane_(level.spheres.size()),
+        planeOf_(level.spheres.size(), kNoIndex),
+        neighbors_(level.spheres.size()) {}
 
   HandleTree run() {
-    joinPlane();
-    joinOrbits();
+    joinNeighbors();
     joinSides();
     const Index root = findRoot();
     return hangFrom(root);
@@ -29,16 +32,17 @@ class TreeMaker {
   // On the plane; without symmetry every handle counts as such. A handle that has lost its image does not.
   bool onPlane(Index h) const { return level_.images.empty() || level_.images[h] == h; }
   bool hasLostImage(Index h) const { return !level_.images.empty() && level_.images[h] == kNoIndex; }
-  double cost(Index a, Index b) const;
+  double gap(Index a, Index b) const;
 
   void connect(Index a, Index b) {
     neighbors_[a].push_back(b);
     neighbors_[b].push_back(a);
   }
-  std::vector<VertexPair> byCost(std::vector<VertexPair> edges) const;
+  std::vector<VertexPair> closestFirst() const;
+  // The handle on the plane that `handle` hangs on by way of others beside it, none so far or one; itself if on the plane.
+  Index onPlaneNear(Index handle) { return onPlane(handle) ? handle : planeOf_[besidePlane_.find(orbitOf(handle))]; }
 
-  void joinPlane();
-  void joinOrbits();
+  void joinNeighbors();
   void joinSides();
   Index findRoot() const;
   HandleTree hangFrom(Index root) const;
@@ -47,73 +51,61 @@ class TreeMaker {
 
   const SphereMeshLevel& level_;
   DisjointSets sets_;                          // of orbits
+  DisjointSets besidePlane_;                   // of those of them that are not on the plane
+  std::vector<Index> planeOf_;                 // per such set, by its first: the handle on the plane that it hangs on
   std::vector<std::vector<Index>> neighbors_;  // of the tree, per handle
 };
 
-// The gap between the spheres, and a part of the distance, so that of touching spheres the nearest are linked.
-double TreeMaker::cost(Index a, Index b) const {
+// Between the spheres, and a part of the distance, so that of touching spheres the nearest are linked.
+double TreeMaker::gap(Index a, Index b) const {
   const Sphere &s = level_.spheres[a], &t = level_.spheres[b];
   const double distance = (s.center - t.center).norm();
   return std::max(0.0, distance - s.radius - t.radius) + 0.25 * distance;
 }
 
-std::vector<VertexPair> TreeMaker::byCost(std::vector<VertexPair> edges) const {
-  std::vector<std::pair<double, VertexPair>> costs;
-  costs.reserve(edges.size());
-  for (const VertexPair& edge : edges) costs.push_back({cost(edge[0], edge[1]), edge});
-  std::sort(costs.begin(), costs.end());
-  for (std::size_t i = 0; i < edges.size(); ++i) edges[i] = costs[i].second;
+// The edges by their borders, the longest first; what has none by the gaps, the narrowest first. Of an edge and its
+// image the one that begins at an orbit's first handle.
+std::vector<VertexPair> TreeMaker::closestFirst() const {
+  struct Link {
+    double border = 0, gap = 0;
+    VertexPair ends;
+  };
+  std::vector<Link> links;
+  links.reserve(level_.edges.size());
+  for (std::size_t e = 0; e < level_.edges.size(); ++e) {
+    auto [a, b] = level_.edges[e];
+    if (orbitOf(a) == orbitOf(b)) continue;
+    if (orbitOf(a) != a) {
+      if (orbitOf(b) != b) continue;
+      std::swap(a, b);
+    }
+    links.push_back({level_.borders.empty() ? 0 : level_.borders[e], gap(a, b), {a, b}});
+  }
+  std::sort(links.begin(), links.end(), [](const Link& a, const Link& b) {
+    return std::tuple(-a.border, a.gap, a.ends) < std::tuple(-b.border, b.gap, b.ends);
+  });
+  std::vector<VertexPair> edges;
+  edges.reserve(links.size());
+  for (const Link& link : links) edges.push_back(link.ends);
   return edges;
 }
 
-// The handles on the plane hang together by edges between them or, where these do not suffice, by the shortest links:
-// one that hung on a handle beside the plane would have to hang on its image as well.
-void TreeMaker::joinPlane() {
-  std::vector<Index> plane;
-  std::vector<Index> indices(level_.spheres.size(), kNoIndex);
-  for (Index h = 0; h < level_.spheres.size(); ++h) {
-    if (!onPlane(h)) continue;
-    indices[h] = static_cast<Index>(plane.size());
-    plane.push_back(h);
-  }
-  std::vector<VertexPair> within;
-  for (const VertexPair& edge : level_.edges) {
-    if (onPlane(edge[0]) && onPlane(edge[1])) within.push_back(edge);
-  }
-  std::vector<VertexPair> joined;
-  for (const auto& [a, b] : byCost(within)) {
-    if (!sets_.unite(a, b)) continue;
-    connect(a, b);
-    joined.push_back({indices[a], indices[b]});
-  }
-  if (joined.size() + 1 >= plane.size()) return;
-  std::vector<Vec3f> centers;
-  for (const Index h : plane) centers.push_back(level_.spheres[h].center.cast<float>());
-  std::vector<VertexPair> links = pieceLinks(centers, joined);
-  for (auto& [a, b] : links) {
-    a = plane[a];
-    b = plane[b];
-  }
-  for (const auto& [a, b] : byCost(links)) {
-    if (sets_.unite(a, b)) connect(a, b);
-  }
-}
-
-void TreeMaker::joinOrbits() {
-  std::vector<VertexPair> edges;
-  for (const auto& [a, b] : level_.edges) {
-    // Of an edge and its image the one is taken that begins at an orbit's first handle.
-    if (orbitOf(a) == a) {
-      edges.push_back({a, b});
-    } else if (orbitOf(b) == b) {
-      edges.push_back({b, a});
-    }
-  }
-  for (const auto& [a, b] : byCost(edges)) {
+// What the plane's handles hang on is on the plane as well: on one handle of a pair they would have to hang on the other
+// too. So two trees that both have handles on the plane are joined there.
+void TreeMaker::joinNeighbors() {
+  for (const auto& [a, b] : closestFirst()) {
     if (!sets_.unite(orbitOf(a), orbitOf(b))) continue;
+    const Index planeA = onPlaneNear(a), planeB = onPlaneNear(b);
+    if (planeA != kNoIndex && planeB != kNoIndex) {
+      connect(planeA, planeB);
+      continue;
+    }
     connect(a, b);
     const bool mirrored = imageOf(a) != a || imageOf(b) != b;
     if (mirrored && !hasLostImage(a) && !hasLostImage(b)) connect(imageOf(a), imageOf(b));
+    if (!onPlane(a) && !onPlane(b)) besidePlane_.unite(orbitOf(a), orbitOf(b));
+    const Index beside = onPlane(a) ? b : a;
+    planeOf_[besidePlane_.find(orbitOf(beside))] = planeA != kNoIndex ? planeA : planeB;
   }
 }
 
@@ -125,7 +117,7 @@ void TreeMaker::joinSides() {
   for (Index h = 0; h < level_.spheres.size(); ++h) {
     if (onPlane(h)) return;
     if (level_.images[h] == kNoIndex || imageOf(h) < h) continue;
-    const double c = cost(h, imageOf(h));
+    const double c = gap(h, imageOf(h));
     if (best == kNoIndex || c < bestCost) {
       best = h;
       bestCost = c;

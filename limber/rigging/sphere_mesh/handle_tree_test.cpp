@@ -35,6 +35,15 @@ SphereMeshLevel levelOf(const std::vector<Vec3>& centers, std::vector<VertexPair
   return level;
 }
 
+std::set<VertexPair> linksOf(const HandleTree& tree) {
+  std::set<VertexPair> links;
+  for (std::size_t j = 1; j < tree.order.size(); ++j) {
+    const Index a = tree.order[j], b = tree.order[*tree.parents[j]];
+    links.insert({std::min(a, b), std::max(a, b)});
+  }
+  return links;
+}
+
 TEST(HandleTree, IsATreeWithParentsFirstAtEveryCount) {
   for (const auto& [name, mesh] : testing::meshCatalogue()) {
     SCOPED_TRACE(name);
@@ -63,11 +72,7 @@ TEST(HandleTree, IsItsOwnMirrorImage) {
   for (Index count = 1; count <= 150; ++count) {
     const SphereMeshLevel level = spheres.level(count);
     const HandleTree tree = handleTree(level);
-    std::set<VertexPair> links;
-    for (std::size_t j = 1; j < count; ++j) {
-      const Index a = tree.order[j], b = tree.order[*tree.parents[j]];
-      links.insert({std::min(a, b), std::max(a, b)});
-    }
+    const std::set<VertexPair> links = linksOf(tree);
     for (const auto& [a, b] : links) {
       const Index x = level.images[a], y = level.images[b];
       EXPECT_TRUE(links.count({std::min(x, y), std::max(x, y)})) << count;
@@ -87,13 +92,24 @@ TEST(HandleTree, PrefersShortLinks) {
   // A square with one diagonal: the longest edge of each cycle is left out.
   const SphereMeshLevel level =
       levelOf({{0, 0, 0}, {3, 0, 0}, {3, 3, 0}, {0, 9, 0}}, {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {2, 3}});
-  const HandleTree tree = handleTree(level);
-  std::set<VertexPair> links;
-  for (std::size_t j = 1; j < 4; ++j) {
-    const Index a = tree.order[j], b = tree.order[*tree.parents[j]];
-    links.insert({std::min(a, b), std::max(a, b)});
-  }
-  EXPECT_EQ(links, (std::set<VertexPair>{{0, 1}, {1, 2}, {2, 3}}));
+  EXPECT_EQ(linksOf(handleTree(level)), (std::set<VertexPair>{{0, 1}, {1, 2}, {2, 3}}));
+}
+
+TEST(HandleTree, PrefersLongBorders) {
+  SphereMeshLevel level = levelOf({{0, 0, 0}, {2, 0, 0}, {9, 0, 0}}, {{0, 1}, {0, 2}, {1, 2}});
+  level.borders = {0.1, 3, 2};
+  EXPECT_EQ(linksOf(handleTree(level)), (std::set<VertexPair>{{0, 2}, {1, 2}}));
+  level.borders = {0, 3, 0};  // of what has no border the narrower gap
+  EXPECT_EQ(linksOf(handleTree(level)), (std::set<VertexPair>{{0, 1}, {0, 2}}));
+}
+
+// A trunk of 0 and 1 on the plane, hips 2 and 3, a tail 4 that meets these alone, far from 1 and near to 0.
+TEST(HandleTree, OnThePlaneWhatMeetsByWayOfAPairIsJoined) {
+  SphereMeshLevel level =
+      levelOf({{0, 0, 0}, {0, 9, 0}, {3, 9, 0}, {-3, 9, 0}, {0, 3, -3}}, {{0, 1}, {1, 2}, {1, 3}, {2, 4}, {3, 4}});
+  level.images = {0, 1, 3, 2, 4};
+  level.borders = {1, 1, 1, 1, 1};
+  EXPECT_EQ(linksOf(handleTree(level)), (std::set<VertexPair>{{0, 1}, {1, 2}, {1, 3}, {1, 4}}));
 }
 
 TEST(HandleTree, TheRootIsInTheMiddle) {

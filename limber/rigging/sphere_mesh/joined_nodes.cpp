@@ -52,21 +52,28 @@ std::vector<Index> clustersOf(const CollapseStart& start, Index maxNodes, Index&
   return clusters;
 }
 
-// Each once, between other clusters or from one to its own image.
-std::vector<GraphEdge> edgesBetween(const std::vector<GraphEdge>& edges, const std::vector<Index>& clusters) {
-  std::vector<GraphEdge> result;
-  for (const GraphEdge& e : edges) {
-    Index a = clusters[e.from], b = clusters[nodeOf(e.to)];
-    if (a == b && !crossesOf(e.to)) continue;
+// Each once, between other clusters or from one to its own image, with the borders of all that it is made of.
+void joinEdges(const CollapseInput& input, const std::vector<Index>& clusters, CollapseInput& joined) {
+  struct Edge : GraphEdge {
+    Border border = 0;
+  };
+  std::vector<Edge> edges;
+  for (std::size_t e = 0; e < input.edges.size(); ++e) {
+    const GraphEdge& edge = input.edges[e];
+    Index a = clusters[edge.from], b = clusters[nodeOf(edge.to)];
+    if (a == b && !crossesOf(edge.to)) continue;
     if (a > b) std::swap(a, b);
-    result.push_back({a, makeEnd(b, crossesOf(e.to))});
+    edges.push_back({{a, makeEnd(b, crossesOf(edge.to))}, input.borders.empty() ? 0 : input.borders[e]});
   }
   const auto key = [](const GraphEdge& e) { return std::pair(e.from, e.to); };
-  std::sort(result.begin(), result.end(), [&](const auto& a, const auto& b) { return key(a) < key(b); });
-  result.erase(
-      std::unique(result.begin(), result.end(), [&](const auto& a, const auto& b) { return key(a) == key(b); }),
-      result.end());
-  return result;
+  std::sort(edges.begin(), edges.end(), [&](const auto& a, const auto& b) { return key(a) < key(b); });
+  for (const Edge& edge : edges) {
+    if (joined.edges.empty() || key(joined.edges.back()) != key(edge)) {
+      joined.edges.push_back(edge);
+      joined.borders.push_back(0);
+    }
+    joined.borders.back() += edge.border;
+  }
 }
 
 }  // namespace
@@ -79,6 +86,7 @@ CollapseStart joinNearNodes(CollapseStart start, Index maxNodes) {
   joined.input.quadrics.resize(count);
   joined.input.moments.resize(count);
   joined.input.single.resize(count);
+  joined.input.area = start.input.area;
   std::vector<Vec3> sums(count, Vec3::Zero());
   std::vector<Index> sizes(count, 0);
   for (std::size_t node = 0; node < clusters.size(); ++node) {
@@ -92,7 +100,7 @@ CollapseStart joinNearNodes(CollapseStart start, Index maxNodes) {
   for (Index cluster = 0; cluster < count; ++cluster) {
     joined.nodeCenters.push_back((sums[cluster] / sizes[cluster]).cast<float>());
   }
-  joined.input.edges = edgesBetween(start.input.edges, clusters);
+  joinEdges(start.input, clusters, joined.input);
   joined.vertexEnds = std::move(start.vertexEnds);
   for (EdgeEnd& end : joined.vertexEnds) end = makeEnd(clusters[nodeOf(end)], crossesOf(end));
   joined.loose = std::move(start.loose);

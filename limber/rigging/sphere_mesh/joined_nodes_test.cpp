@@ -30,6 +30,7 @@ CollapseStart sheet(Index side) {
       if (x > 0) start.vertexEnds.push_back(makeEnd(node, true));
     }
   }
+  for (const GraphEdge& e : start.input.edges) start.input.borders.push_back(1 + (e.from + 3 * e.to) % 17);
   start.loose.push_back({0, side * side - 1});
   return start;
 }
@@ -69,6 +70,18 @@ TEST(JoinNearNodes, MakesClustersOfOneKindThatWeighAsMuch) {
     toOwnImages += e.from == nodeOf(e.to) ? 1 : 0;
   }
   EXPECT_EQ(toOwnImages, 16u);
+  ASSERT_EQ(joined.input.borders.size(), joined.input.edges.size());
+  std::vector<Index> clusters(start.nodeCenters.size());
+  for (std::size_t v = 0; v < joined.vertexEnds.size(); ++v) {
+    clusters[nodeOf(start.vertexEnds[v])] = nodeOf(joined.vertexEnds[v]);
+  }
+  Border between = 0, joinedBorders = 0;
+  for (std::size_t e = 0; e < start.input.edges.size(); ++e) {
+    const GraphEdge& edge = start.input.edges[e];
+    if (crossesOf(edge.to) || clusters[edge.from] != clusters[nodeOf(edge.to)]) between += start.input.borders[e];
+  }
+  for (const Border border : joined.input.borders) joinedBorders += border;
+  EXPECT_EQ(joinedBorders, between);
 }
 
 TEST(JoinNearNodes, JoinsNoNodesThatDoNotHangTogether) {

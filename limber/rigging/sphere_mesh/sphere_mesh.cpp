@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <unordered_map>
 
 #include <fmt/format.h>
 
@@ -9,6 +11,11 @@
 #include "limber/rigging/sphere_mesh/handle_count.h"
 
 namespace limber {
+
+struct SphereMesh::BorderedEdge {
+  VertexPair ends;  // handles
+  Border border = 0;
+};
 
 // The collapse stopped at a count.
 struct SphereMesh::Cut {
@@ -117,26 +124,40 @@ SphereMeshLevel SphereMesh::level(Index count) const {
       if (mirror_) level.images.push_back(node.handle + (node.single ? 0 : 1 - side));
     }
   }
-  level.edges = edgesOf(cut);
-  if (cut.bridge) applyBridge(cut, level);
-  if (cut.loose < loose_.size()) appendLoose(cut, level);
-  std::sort(level.edges.begin(), level.edges.end());
-  level.edges.erase(std::unique(level.edges.begin(), level.edges.end()), level.edges.end());
+  std::vector<BorderedEdge> edges = edgesOf(cut);
+  if (cut.bridge) applyBridge(cut, level, edges);
+  if (cut.loose < loose_.size()) appendLoose(cut, level, edges);
+  std::sort(edges.begin(), edges.end(), [](const auto& a, const auto& b) { return a.ends < b.ends; });
+  for (const BorderedEdge& edge : edges) {
+    if (level.edges.empty() || level.edges.back() != edge.ends) {
+      level.edges.push_back(edge.ends);
+      level.borders.push_back(0);
+    }
+    level.borders.back() += static_cast<double>(edge.border) * kBorderUnit * frame_.scale;
+  }
   return level;
 }
 
-// All edges that went after the cut were alive at it.
-std::vector<VertexPair> SphereMesh::edgesOf(const Cut& cut) const {
-  std::vector<VertexPair> edges;
+// All edges that went after the cut were alive at it; what has joined them since is not yet of their borders.
+std::vector<SphereMesh::BorderedEdge> SphereMesh::edgesOf(const Cut& cut) const {
+  std::vector<BorderedEdge> edges;
   if (cut.merges == sequence_.merges.size()) return edges;
-  const auto add = [&](Index a, Index b) {
-    if (a != b) edges.push_back({std::min(a, b), std::max(a, b)});
+  const std::span<const DeadEdge> alive =
+      std::span(sequence_.deadEdges).subspan(sequence_.merges[cut.merges].deadBegin);
+  std::unordered_map<Index, Border> joinedSince;
+  for (const DeadEdge& edge : alive) {
+    if (edge.joined != kNoIndex && edge.border > 0) joinedSince[edge.joined] += edge.border;
+  }
+  const auto add = [&](Index a, Index b, Border border) {
+    if (a != b) edges.push_back({{std::min(a, b), std::max(a, b)}, border});
   };
-  for (std::size_t i = sequence_.merges[cut.merges].deadBegin; i < sequence_.deadEdges.size(); ++i) {
-    const GraphEdge& e = sequence_.edges[sequence_.deadEdges[i]];
+  for (const DeadEdge& edge : alive) {
+    const GraphEdge& e = sequence_.edges[edge.edge];
+    const auto joined = joinedSince.find(edge.edge);
+    const Border border = edge.border - (joined == joinedSince.end() ? 0 : joined->second);
     const EdgeEnd from = climb(makeEnd(e.from, false), cut.merges), to = climb(e.to, cut.merges);
-    add(cut.handleOf(from), cut.handleOf(to));
-    add(cut.handleOf(from ^ 1), cut.handleOf(to ^ 1));
+    add(cut.handleOf(from), cut.handleOf(to), border);
+    add(cut.handleOf(from ^ 1), cut.handleOf(to ^ 1), border);
   }
   return edges;
 }
@@ -153,7 +174,7 @@ EdgeEnd SphereMesh::climb(EdgeEnd end, Index mergeCount) const {
 }
 
 // Makes one handle of two: those of two single nodes, or the two of a pair. The last handle takes the freed slot.
-void SphereMesh::applyBridge(const Cut& cut, SphereMeshLevel& level) const {
+void SphereMesh::applyBridge(const Cut& cut, SphereMeshLevel& level, std::vector<BorderedEdge>& edges) const {
   const Bridge& bridge = *cut.bridge;
   const Index first = cut.find(bridge.a).handle;
   const Index second = bridge.a == bridge.b ? first + 1 : cut.find(bridge.b).handle;
@@ -166,18 +187,15 @@ void SphereMesh::applyBridge(const Cut& cut, SphereMeshLevel& level) const {
   level.weights.erase(level.weights.begin() + gone);
   level.images.erase(level.images.begin() + gone);
   for (Index& image : level.images) image = renamed(image);  // no loose ones are left at a bridge
-  std::vector<VertexPair> edges;
-  for (const auto& [a, b] : level.edges) {
-    const Index from = renamed(a), to = renamed(b);
-    if (from != to) edges.push_back({std::min(from, to), std::max(from, to)});
-  }
-  level.edges = std::move(edges);
+  for (BorderedEdge& edge : edges) edge.ends = {renamed(edge.ends[0]), renamed(edge.ends[1])};
+  std::erase_if(edges, [](const BorderedEdge& edge) { return edge.ends[0] == edge.ends[1]; });
+  for (BorderedEdge& edge : edges) std::sort(edge.ends.begin(), edge.ends.end());
 }
 
-void SphereMesh::appendLoose(const Cut& cut, SphereMeshLevel& level) const {
+void SphereMesh::appendLoose(const Cut& cut, SphereMeshLevel& level, std::vector<BorderedEdge>& edges) const {
   for (std::size_t i = cut.loose; i < loose_.size(); ++i) {
     const Index handle = static_cast<Index>(level.spheres.size());
-    level.edges.push_back({cut.handleOf(vertexEnds_[loose_[i].vertex]), handle});
+    edges.push_back({{cut.handleOf(vertexEnds_[loose_[i].vertex]), handle}, 0});
     level.spheres.push_back({loosePositions_[i].cast<double>(), 0});
     level.weights.push_back(0);
     level.images.push_back(kNoIndex);
@@ -243,6 +261,16 @@ std::vector<double> SphereMesh::errors(Index maxCount) const {
   }
   for (double& error : errors) error = std::sqrt(error) * frame_.scale;
   return errors;
+}
+
+Index SphereMesh::fewestForLimbs() const {
+  float longest = 0;
+  for (const LostEnd& end : sequence_.lostEnds) longest = std::max(longest, end.length);
+  Index fewest = 1;
+  for (const LostEnd& end : sequence_.lostEnds) {
+    if (end.length >= 0.5f * longest) fewest = std::max(fewest, end.countBefore);
+  }
+  return fewest;
 }
 
 Sphere SphereMesh::toMesh(const Vec3f& center, float radius, bool image) const {

@@ -21,6 +21,8 @@ struct SphereMeshLevel {
   std::vector<Index> images;      // its mirror image, itself on the plane, kNoIndex if none; empty without symmetry.
                                   // Of two images the first is on the plane's positive side
   std::vector<VertexPair> edges;  // between neighbours, first < second, ordered; they connect all spheres
+  std::vector<double> borders;  // per edge: length of the border between the surfaces that the two represent, 0 between
+                                // pieces that are apart; empty where it is not known
 };
 
 // Sphere-Meshes: Shape Approximation using Spherical Quadric Error Metrics; Thiery, Guy, Boubekeur; 2013.
@@ -53,17 +55,22 @@ class SphereMesh {
   // the one above it. Cost: O(maxCount).
   std::vector<double> errors(Index maxCount) const;
 
+  // The least count at which every limb has a handle of its own at its end, of those that are at least half as long as
+  // the longest; 1 where the model has no limbs. Cost: O(#limbs).
+  Index fewestForLimbs() const;
+
   // The record itself, in the collapse's own space.
   const CollapseSequence& sequence() const { return sequence_; }
 
  private:
   struct Cut;
+  struct BorderedEdge;
 
   Cut cutAt(Index count) const;
   void listNodes(Cut& cut) const;
-  void applyBridge(const Cut& cut, SphereMeshLevel& level) const;
-  void appendLoose(const Cut& cut, SphereMeshLevel& level) const;
-  std::vector<VertexPair> edgesOf(const Cut& cut) const;
+  void applyBridge(const Cut& cut, SphereMeshLevel& level, std::vector<BorderedEdge>& edges) const;
+  void appendLoose(const Cut& cut, SphereMeshLevel& level, std::vector<BorderedEdge>& edges) const;
+  std::vector<BorderedEdge> edgesOf(const Cut& cut) const;
   EdgeEnd climb(EdgeEnd end, Index mergeCount) const;
   Sphere toMesh(const Vec3f& center, float radius, bool image) const;
 

@@ -5,6 +5,7 @@
 
 #include "limber/core/grouped.h"
 #include "limber/geometry/mesh/model_box.h"
+#include "limber/geometry/surface/border_lengths.h"
 #include "limber/geometry/surface/piece_links.h"
 #include "limber/geometry/surface/point_tree.h"
 #include "limber/geometry/surface/stray_pieces.h"
@@ -12,6 +13,8 @@
 namespace limber {
 
 namespace {
+
+constexpr double kMaxBorder = 1 << 23;  // of an edge, in units: eight times the model
 
 // Rotations that bring an axis to x by renaming the axes keep coordinates exact.
 Mat3 axesFor(const Vec3& normal) {
@@ -82,6 +85,7 @@ void Starter::measureSurface(const std::vector<VertexPair>& links) {
   }
   const double total = 3 * std::accumulate(weights_.begin(), weights_.end(), 0.0);
   if (!(total > 0)) return;
+  start_.input.area = total;
   for (double& weight : weights_) weight /= total;
 }
 
@@ -193,30 +197,46 @@ void Starter::addSurface() {
 }
 
 void Starter::addEdges(const std::vector<VertexPair>& edges) {
-  std::vector<GraphEdge> found;
+  struct Found {
+    Index from = 0;
+    EdgeEnd to = 0;
+    double border = 0;
+  };
+  std::vector<double> borders = borderLengths(points_, mesh_.triangles, surface_.edges);
+  borders.resize(edges.size(), 0);  // pieces are apart
+  std::vector<Found> found;
   found.reserve(edges.size());
-  for (const auto& [first, second] : edges) {
-    Index a = nodeOf(start_.vertexEnds[first]), b = nodeOf(start_.vertexEnds[second]);
-    bool crosses = crossesOf(start_.vertexEnds[first]) != crossesOf(start_.vertexEnds[second]);
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    const EdgeEnd first = start_.vertexEnds[edges[e][0]], second = start_.vertexEnds[edges[e][1]];
+    Index a = nodeOf(first), b = nodeOf(second);
+    bool crosses = crossesOf(first) != crossesOf(second);
     if (single(a) || single(b)) crosses = false;
     if (a == b && !crosses) continue;
     if (a > b) std::swap(a, b);
-    found.push_back({a, makeEnd(b, crosses)});
+    // An edge and its image are one here; a level has both again.
+    found.push_back({a, makeEnd(b, crosses), borders[e] / 2});
     if (!crosses || a == b) continue;
     found.push_back({a, makeEnd(a, true)});  // an edge across the plane: both ends are near their images
     found.push_back({b, makeEnd(b, true)});
   }
   // By first node, then by second: counting, then short sorts.
-  Grouped<EdgeEnd> ends(start_.nodeCenters.size(), [&](const auto& visit) {
-    for (const GraphEdge& e : found) visit(e.from, e.to);
+  using End = std::pair<EdgeEnd, double>;
+  Grouped<End> ends(start_.nodeCenters.size(), [&](const auto& visit) {
+    for (const Found& e : found) visit(e.from, End{e.to, e.border});
   });
-  std::vector<GraphEdge>& unique = start_.input.edges;
-  unique.reserve(found.size());
+  CollapseInput& input = start_.input;
+  input.edges.reserve(found.size());
+  input.borders.reserve(found.size());
   for (Index node = 0; node < ends.count(); ++node) {
-    const std::span<EdgeEnd> of = ends.of(node);
+    const std::span<End> of = ends.of(node);
     std::sort(of.begin(), of.end());
-    const auto last = std::unique(of.begin(), of.end());
-    for (auto end = of.begin(); end != last; ++end) unique.push_back({node, *end});
+    for (auto end = of.begin(); end != of.end();) {
+      const EdgeEnd to = end->first;
+      double border = 0;
+      for (; end != of.end() && end->first == to; ++end) border += end->second;
+      input.edges.push_back({node, to});
+      input.borders.push_back(static_cast<Border>(std::min(border / kBorderUnit, kMaxBorder)));
+    }
   }
 }
 

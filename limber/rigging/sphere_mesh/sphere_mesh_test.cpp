@@ -1,12 +1,14 @@
 #include "limber/rigging/sphere_mesh/sphere_mesh.h"
 
 #include <cmath>
+#include <map>
 #include <set>
 
 #include <gtest/gtest.h>
 
 #include "limber/core/error.h"
 #include "limber/core/parallel.h"
+#include "limber/geometry/surface/border_lengths.h"
 #include "limber/geometry/surface/testing/shape_meshes.h"
 #include "limber/rigging/sphere_mesh/testing/sphere_mesh_of.h"
 
@@ -324,6 +326,39 @@ TEST(SphereMesh, RefusesCountsThatItCannotGive) {
     EXPECT_THROW(spheres.vertexHandles(count), Error);
   }
   EXPECT_THROW(sphereMeshOf(TriMesh{}), Error);
+}
+
+// Between every two handles: the borders of all edges of the mesh between their vertices, however it was collapsed.
+TEST(SphereMesh, BordersAreThoseOfTheHandlesVertices) {
+  for (const auto& [name, mesh] : testing::meshCatalogue()) {
+    SCOPED_TRACE(name);
+    const SphereMesh spheres = sphereMeshOf(mesh);
+    const std::vector<VertexPair> edges = surfaceEdges(mesh).edges;
+    const std::vector<double> lengths = borderLengths(mesh.positions, mesh.triangles, edges);
+    for (const Index count : {2u, 3u, 5u, 8u, 9u, 20u, 41u}) {
+      if (count > spheres.sequence().initialCount) break;
+      const SphereMeshLevel level = spheres.level(count);
+      const std::vector<Index> handles = spheres.vertexHandles(count);
+      std::map<VertexPair, double> borders;
+      for (std::size_t e = 0; e < edges.size(); ++e) {
+        const auto [a, b] = std::minmax(handles[edges[e][0]], handles[edges[e][1]]);
+        if (a != b) borders[{a, b}] += lengths[e];
+      }
+      Box box;
+      for (Index v = 0; v < mesh.vertexCount(); ++v) box.add(mesh.position(v));
+      const double rounding = 2e-6 * static_cast<double>(edges.size()) * box.longestSide();
+      ASSERT_EQ(level.borders.size(), level.edges.size());
+      for (std::size_t e = 0; e < level.edges.size(); ++e) {
+        const auto [a, b] = level.edges[e];
+        double expected = borders[{a, b}];
+        if (!level.images.empty()) {  // where an edge of the mesh has no image, half of its border is there
+          const auto [x, y] = std::minmax(level.images[a], level.images[b]);
+          expected = (expected + borders[{x, y}]) / 2;
+        }
+        EXPECT_NEAR(level.borders[e], expected, rounding) << count;
+      }
+    }
+  }
 }
 
 }  // namespace
