@@ -40,7 +40,7 @@ std::vector<bool> locksOf(const SessionState& state) {
 
 void letLimbsFollow(SessionState& state) {
   state.limbsFollow = true;
-  state.ik = hasLimbs(state.rig->anatomy());
+  state.ik = hasLimbs(*state.rig);
   holdStandingFeet(state);
 }
 

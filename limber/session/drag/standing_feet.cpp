@@ -32,10 +32,24 @@ const Part* legOf(const Anatomy& anatomy, Index foot) {
   return nullptr;
 }
 
+bool isBodyWithLimbs(const Anatomy& anatomy) {
+  return anatomy.confidence >= kDoubtful && std::any_of(anatomy.parts.begin(), anatomy.parts.end(), isLimb);
+}
+
+// Of handles: one that hangs on two that can turn, or more.
+bool hasChains(const Skeleton& handles) {
+  if (handles.boneShape != BoneShape::kSphere) return false;
+  for (Index j = 0; j < handles.jointCount(); ++j) {
+    const std::optional<Index> base = limbBase(handles, j);
+    if (base && *base != *handles.joints[j].parent) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
-bool hasLimbs(const Anatomy& anatomy) {
-  return anatomy.confidence >= kDoubtful && std::any_of(anatomy.parts.begin(), anatomy.parts.end(), isLimb);
+bool hasLimbs(const RiggedModel& rig) {
+  return isBodyWithLimbs(rig.anatomy()) || hasChains(rig.skeleton());
 }
 
 std::vector<PinnedTarget> standingFeet(const RiggedModel& rig, const Pose& pose) {
@@ -43,7 +57,7 @@ std::vector<PinnedTarget> standingFeet(const RiggedModel& rig, const Pose& pose)
   const Anatomy& anatomy = rig.anatomy();
   const std::vector<Affine> rest = restGlobals(skeleton), posed = poseGlobals(skeleton, pose);
   std::vector<PinnedTarget> feet;
-  if (!hasLimbs(anatomy)) return feet;
+  if (!isBodyWithLimbs(anatomy)) return feet;
   for (const Part& part : anatomy.parts) {
     if (part.kind != PartKind::kLeg || part.joints.empty()) continue;
     const Index foot = footOf(part);

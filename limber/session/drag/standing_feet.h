@@ -8,9 +8,9 @@
 
 namespace limber {
 
-// Whether it is a body, read with confidence, that has legs, arms or wings: then limbs follow unless the user says
-// otherwise.
-bool hasLimbs(const Anatomy& anatomy);
+// Whether limbs follow unless the user says otherwise: on a body, read with confidence, that has legs, arms or wings, and
+// on handles of which at least one can be reached by turning two others or more.
+bool hasLimbs(const RiggedModel& rig);
 
 // Feet, paws and hooves that are no higher in `pose` than in the rest pose, pinned in position and rotation. World
 // space.
