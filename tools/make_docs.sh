@@ -16,8 +16,8 @@ picture winged_rigged.glb handles dragon_handles.png
 picture winged_rigged.glb weights dragon_weights.png
 picture quadruped_rigged.glb handles fox_handles.png
 picture robot_rigged.glb handles robot_handles.png
-$limber pose $work/winged_rigged.glb --turn handle_03.L=z:30 --turn handle_03.R=z:-30 --turn handle_07.L=z:15 \
-  --turn handle_07.R=z:-15 --turn handle_02=y:25 --turn handle_06=y:25 --turn handle_09=y:-40 --turn handle_04.L=x:-35 \
+$limber pose $work/winged_rigged.glb --turn handle_03.L=z:30 --turn handle_03.R=z:-30 --turn handle_08.L=z:15 \
+  --turn handle_08.R=z:-15 --turn handle_02=y:40 --turn handle_06=y:-40 --turn handle_04.L=x:-35 \
   -o $work/winged_posed.glb --quiet
 picture winged_posed.glb model dragon_posed.png
 
@@ -152,7 +152,7 @@ if [ -d "$characters" ]; then
   foreign=(stool.glb chair_1.glb m2m_{dragon,bird,horse,spider,kaiju}_static.glb rawscan_hermes.ply
     {cat_low_resolution,hand_lowres,fish_low_resolution}.obj)
   table=$($limber evaluate handles "${foreign[@]/#/$meshes/}" --counts 8,12,20 --sheet $images/handles_foreign.png --quiet)
-  table="$table" perl -0pi -e 's/(<!-- made by [^\n]*: handles -->\n).*(<!-- end of handles -->)/$1\n![Handles of each model at 8, 12 and 20](images\/handles_foreign.png)\n\n$ENV{table}\n$2/s' docs/methods.md
+  table="$table" perl -0pi -e 's/(<!-- made by [^\n]*: handles -->\n).*(<!-- end of handles -->)/$1\n![Handles of each model at 8, 12 and 20](images\/handles_foreign.png)\n\n$ENV{table}\n$2/s' docs/handles.md
   curved=(m2m_human_male fox_khronos m2m_bird_eagle quaternius_{spider,dolphin,trex,snake} robot_expressive)
   curved=("${curved[@]/#/$characters/}")
   $limber evaluate templates "${curved[@]/%/.glb}" --rigger curve-skeleton --sheet $images/curve_skeletons.png \
