@@ -1,4 +1,4 @@
-// limber pose: the joints of a rigged model are turned, moved and reached, and stand so in the written file.
+// limber pose: the joints of a rigged model are turned, scaled, moved and reached, and stand so in the written file.
 
 #include <algorithm>
 
@@ -32,7 +32,7 @@ struct PoseArguments {
   std::string input, output, applied, posesFile, poseName, limitsFile, deformer = "linear-blend", rootMotion = "fixed";
   std::optional<std::string> clip;
   std::optional<double> seconds;
-  std::vector<std::string> turns, moves, reaches, poles, bases, tasks;
+  std::vector<std::string> turns, scales, moves, reaches, poles, bases, tasks;
   PoseOptions pose;
   bool bake = false, setRest = false;
   Common common;
@@ -61,6 +61,7 @@ PoseEdits collectEdits(const PoseArguments& options) {
     const std::vector<JointTurn> turns = parseTurn(text);
     edits.turns.insert(edits.turns.end(), turns.begin(), turns.end());
   }
+  for (const std::string& text : options.scales) edits.scales.push_back(parseScale(text));
   for (const std::string& text : options.moves) edits.moves.push_back(parseMove(text));
   for (const std::string& text : options.reaches) edits.reaches.push_back(parseReach(text));
   for (const std::string& text : options.poles) parsePole(text, edits);
@@ -208,9 +209,11 @@ std::string poseHelp() {
       "Sample poses:\n";
   for (const SamplePose& pose : samplePoses()) text += fmt::format("  {:<20}{}\n", pose.name, pose.summary);
   return text +
-         "\nThe pose of --apply comes first. All turns are made next, then all moves, then all reaches at once, then "
-         "all\n"
-         "tasks at once. Axes and points are the world's. Joints are called as in the file or as VRM's bones "
+         "\nThe pose of --apply comes first. All turns are made next, then all scales, then all moves, then all "
+         "reaches "
+         "at\n"
+         "once, then all tasks at once. Axes and points are the world's. Joints are called as in the file or as VRM's "
+         "bones "
          "(leftHand).\n"
          "Names in the examples are those of handles (rigged.glb) and of the template humanoid (hero.glb).\n"
          "The file that --poses names: {\"poses\": [{\"name\": \"wave\", \"turn\": [{\"joint\": \"head\", \"axis\": "
@@ -226,6 +229,7 @@ std::string poseHelp() {
          "20}]}]}' "
          "> poses.json\n"
          "  limber pose hero.glb --poses poses.json --bake -o posed.obj\n"
+         "  limber pose rigged.glb --scale handle_02=1.4 -o large_head.glb\n"
          "  limber pose walking.glb --clip walk --time 0.4 --bake -o statue.stl\n"
          "  limber pose hero.glb --turn leftUpperArm=z:45 --set-rest -o t_pose.glb\n"
          "  limber pose hero.glb --apply sit -o sitting.glb\n"
@@ -236,7 +240,7 @@ std::string poseHelp() {
 
 void addPoseCommand(CLI::App& program) {
   auto options = std::make_shared<PoseArguments>();
-  CLI::App* command = program.add_subcommand("pose", "Turn, move and reach the joints of a rigged model");
+  CLI::App* command = program.add_subcommand("pose", "Turn, scale, move and reach the joints of a rigged model");
   command->add_option("IN", options->input, "the rigged model; - is standard input")->required();
   command->add_option("-o,--output", options->output, modelOutputHelp() + "; or the pose alone as .pose.json")
       ->required()
@@ -246,6 +250,7 @@ void addPoseCommand(CLI::App& program) {
     command->add_option(name, values, description)->type_name(form)->allow_extra_args(false);
   };
   addMany("--turn", options->turns, "turn a joint about axes of the world by degrees", "JOINT=y:30");
+  addMany("--scale", options->scales, "scale a joint, and what hangs on it, by a factor", "JOINT=1.5");
   addMany("--move", options->moves, "move a joint, in metres", "JOINT=x,y,z");
   addMany("--reach", options->reaches, "bring a joint to a point; the joints above it turn", "JOINT=x,y,z");
   addMany("--pole", options->poles, "the point to which the middle of a reaching limb bends", "JOINT=x,y,z");

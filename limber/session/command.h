@@ -162,6 +162,21 @@ struct SetTurn {
   }
 };
 
+// The joint scaled so from its rest pose, along all axes, about itself; what hangs on it comes along. Targets of pinned
+// joints go where these are then. Refused where a recorded motion is shown: keys over one hold no scale.
+struct SetScale {
+  std::string joint;
+  double scale = 1;                    // above 0
+  std::vector<std::string> with = {};  // joints that are scaled so from theirs
+  bool mirrored = false;               // mirror images are scaled as their originals are
+  bool relative = false;               // from the pose as it is instead
+
+  static constexpr std::string_view kName = "set_scale";
+  void fields(auto& field) {
+    field("joint", joint)("scale", scale)("with", with)("mirrored", mirrored)("relative", relative);
+  }
+};
+
 // With inverse kinematics on, a joint that is moved takes its limb along, and joints with a target hold on to it.
 struct SetIk {
   bool on = true;
@@ -576,9 +591,9 @@ using Command =
                  MirrorPose, SetRestPose, RenameJoint, AddMotion, AddSampleMotion, RetargetMotion, SetContact, AddClip,
                  RemoveClip, RenameClip, ChooseClip, SetTime, SetKey, EditKeys, DeleteKeys, SetJointKey,
                  SetInterpolation, SetTangents, PasteKeys, PaintWeights, LockWeights, MirrorWeights, AddJoint,
-                 DeleteJoint, ReparentJoint, PlaceJoint, SetTurn, ApplyPose, ApplyTasks, Undo, Redo, AddSample, AddFile,
-                 RemoveMember, ChooseMember, RenameMember, PlaceMember, AttachMember, DetachMember, SetClock,
-                 SetDeformer, TransferRig, RigFromAnimation, JoinClips>;
+                 DeleteJoint, ReparentJoint, PlaceJoint, SetTurn, SetScale, ApplyPose, ApplyTasks, Undo, Redo,
+                 AddSample, AddFile, RemoveMember, ChooseMember, RenameMember, PlaceMember, AttachMember, DetachMember,
+                 SetClock, SetDeformer, TransferRig, RigFromAnimation, JoinClips>;
 
 // "auto", "flat", "free", as in JSON.
 std::string_view keyTangentsName(KeyTangents tangents);

@@ -60,6 +60,7 @@ std::vector<Command> oneOfEach() {
           ReparentJoint{"head", "hips"},
           PlaceJoint{"hand.L", {0.5, 1, -0.25}, {"head"}, true, true},
           SetTurn{"hand.L", {30, -20, 1.0 / 3}, {"head"}, true, true},
+          SetScale{"hand.L", 1.5, {"head"}, true, true},
           ApplyPose{R"({"limber_pose": 1})", {"head", "hips"}, true},
           ApplyTasks{{"look-at:head=0,1,2", "balance=within"}, true},
           Undo{},
@@ -120,6 +121,7 @@ TEST(Command, JsonKeepsEveryCommandAndEveryField) {
   EXPECT_TRUE(only<PlaceJoint>(back).relative);
   EXPECT_EQ(only<SetTurn>(back).turn, Vec3(30, -20, 1.0 / 3));
   EXPECT_TRUE(only<SetTurn>(back).relative);
+  EXPECT_EQ(only<SetScale>(back).scale, 1.5);
   EXPECT_EQ(only<SetTurn>(back).with, std::vector<std::string>{"head"});
   EXPECT_TRUE(only<UpdateDrag>(back).snap);
   EXPECT_TRUE(only<EndDrag>(back).goesOn);

@@ -91,6 +91,25 @@ TEST_F(PlaceJointTest, TheOtherSideTurnsInTheMirror) {
   EXPECT_LT((positionOf(right) - image).norm(), 2e-3);
 }
 
+TEST_F(PlaceJointTest, AJointIsScaledFromItsRestPoseAndWhatHangsOnItComesAlong) {
+  const Index hand = end(PartKind::kArm, Side::kLeft), elbow = *skeleton().joints[hand].parent;
+  const Index other = *skeleton().joints[end(PartKind::kArm, Side::kRight)].parent;
+  const Vec3 from = positionOf(elbow);
+  const double forearm = (positionOf(hand) - from).norm();
+  run(SetScale{name(elbow), 3});
+  run(SetScale{name(elbow), 1.5, {}, true});
+  EXPECT_LT((positionOf(elbow) - from).norm(), 1e-12);
+  EXPECT_NEAR((positionOf(hand) - from).norm(), 1.5 * forearm, 1e-9);
+  EXPECT_NEAR(session.state().pose.locals[other].scale.x(), 1.5, 1e-12);
+  run(SetScale{name(elbow), 2, {}, false, true});
+  EXPECT_NEAR((positionOf(hand) - from).norm(), 3 * forearm, 1e-9);
+  run(SetScale{name(elbow), 1, {}, true});
+  EXPECT_NEAR((positionOf(hand) - from).norm(), forearm, 1e-9);
+  EXPECT_THROW(run(SetScale{name(elbow), 0}), Error);
+  EXPECT_THROW(run(SetScale{name(elbow), -1}), Error);
+  EXPECT_EQ(steps(), 4u);
+}
+
 TEST_F(PlaceJointTest, LimitsHold) {
   const Index hand = end(PartKind::kArm, Side::kLeft);
   run(SetLimits{R"({"limber_limits": 1, "joints": {")" + name(hand) + R"(": {"type": "fixed"}}})"});

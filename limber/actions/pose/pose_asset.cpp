@@ -79,6 +79,9 @@ std::vector<ReachReport> editPose(const Skeleton& skeleton, Pose& pose, const Po
     const Index joint = requireJoint(skeleton, edit.joint, edit.where);
     if (limits) pose.locals[joint].rotation = nearestAllowed(limits->joints[joint], pose.locals[joint].rotation);
   }
+  for (const JointScale& edit : edits.scales) {
+    pose.locals[requireJoint(skeleton, edit.joint, edit.where)].scale *= edit.factor;
+  }
   for (const JointMove& edit : edits.moves) move(skeleton, pose, edit);
   if (edits.reaches.empty()) return {};
   return reach(skeleton, pose, edits.reaches, limits, options);

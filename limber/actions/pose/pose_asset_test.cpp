@@ -134,6 +134,22 @@ TEST(PoseAsset, AMoveTakesWhatHangsOnTheJointAlong) {
   EXPECT_LT((jointAt(skeleton, pose, "foot") - Vec3(3, 0.5, 0)).norm(), 1e-6);
 }
 
+TEST(PoseAsset, AScaleIsAboutTheJointAndTakesWhatHangsOnItAlong) {
+  const Asset asset = riggedStrip();
+  const AssetSkeleton skeleton = readSkeleton(asset);
+  Pose pose = readNodePose(asset, skeleton);
+  const Vec3 hip = jointAt(skeleton, pose, "hip"), knee = jointAt(skeleton, pose, "knee"),
+             foot = jointAt(skeleton, pose, "foot");
+  PoseEdits edits;
+  edits.scales = {parseScale("knee=2"), parseScale("knee=1.5")};
+  editPose(skeleton.skeleton, pose, edits);
+  EXPECT_EQ(jointAt(skeleton, pose, "hip"), hip);
+  EXPECT_LT((jointAt(skeleton, pose, "knee") - knee).norm(), 1e-6);
+  EXPECT_LT((jointAt(skeleton, pose, "foot") - knee - 3 * (foot - knee)).norm(), 1e-6);
+  edits.scales = {parseScale("elbow=2")};
+  EXPECT_THROW(editPose(skeleton.skeleton, pose, edits), Error);
+}
+
 TEST(PoseAsset, AReachTellsWhatIsLeft) {
   const Asset asset = riggedStrip();
   const AssetSkeleton skeleton = readSkeleton(asset);

@@ -56,6 +56,13 @@ std::vector<JointTurn> parseTurn(std::string_view text) {
   return turns;
 }
 
+JointScale parseScale(std::string_view text) {
+  const auto [joint, value] = splitAtEquals(text);
+  const std::optional<double> factor = finiteNumber(value);
+  if (!factor || !(*factor > 0)) failText(text, "has no factor above 0 after the '='", "write joint=1.5");
+  return {joint, *factor, inQuotes(text)};
+}
+
 JointMove parseMove(std::string_view text) {
   const auto [joint, value] = splitAtEquals(text);
   return {joint, pointOf(text, value), inQuotes(text)};
@@ -225,11 +232,20 @@ TaskEdit readTask(const JsonView& entry) {
   return task;
 }
 
+JointScale readScale(const JsonView& entry) {
+  refuseOtherKeys(entry, std::array<std::string_view, 2>{"joint", "factor"});
+  JointScale scale{requireText(entry, "joint"), requireNumber(entry, "factor"), entry.path()};
+  if (!(scale.factor > 0)) entry.member("factor").fail("is not above 0");
+  return scale;
+}
+
 NamedPose readPose(const JsonView& entry) {
-  refuseOtherKeys(entry, std::array<std::string_view, 5>{"name", "turn", "move", "reach", "tasks"});
+  refuseOtherKeys(entry, std::array<std::string_view, 6>{"name", "turn", "scale", "move", "reach", "tasks"});
   NamedPose pose{requireText(entry, "name"), {}};
   const JsonView turns = entry.array("turn"), moves = entry.array("move"), reaches = entry.array("reach");
   for (std::size_t k = 0; k < turns.size(); ++k) pose.edits.turns.push_back(readTurn(turns[k]));
+  const JsonView scales = entry.array("scale");
+  for (std::size_t k = 0; k < scales.size(); ++k) pose.edits.scales.push_back(readScale(scales[k]));
   for (std::size_t k = 0; k < moves.size(); ++k) pose.edits.moves.push_back(readMove(moves[k]));
   for (std::size_t k = 0; k < reaches.size(); ++k) pose.edits.reaches.push_back(readReach(reaches[k]));
   const JsonView tasks = entry.array("tasks");
@@ -264,8 +280,8 @@ std::vector<NamedPose> parsePoses(std::string_view json, std::string_view file) 
       for (auto& edit : edits) edit.where = file.empty() ? edit.where : fmt::format("{}: {}", file, edit.where);
     };
     for (NamedPose& pose : poses) {
-      applyTransform(pose.edits.turns), applyTransform(pose.edits.moves), applyTransform(pose.edits.reaches),
-          applyTransform(pose.edits.tasks);
+      applyTransform(pose.edits.turns), applyTransform(pose.edits.scales), applyTransform(pose.edits.moves),
+          applyTransform(pose.edits.reaches), applyTransform(pose.edits.tasks);
     }
     return poses;
   } catch (const Error& error) {

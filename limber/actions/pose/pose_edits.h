@@ -1,4 +1,4 @@
-// What somebody wants of a pose, in words: joints turned, moved and reached, and tasks. From the command line or a JSON
+// What somebody wants of a pose, in words: joints turned, scaled, moved and reached, and tasks. From the command line or a JSON
 // file.
 #pragma once
 
@@ -21,6 +21,12 @@ struct JointTurn {
   std::string where = {};
 };
 
+struct JointScale {
+  std::string joint;
+  double factor = 1;  // above 0, along all axes; the joint's surface and what hangs on it grow
+  std::string where = {};
+};
+
 struct JointMove {
   std::string joint;
   Vec3 offset = Vec3::Zero();  // the joint and what hangs on it move
@@ -36,10 +42,11 @@ struct JointReach {
   std::string where = {};
 };
 
-// Carried out in this order: all turns as listed, all moves as listed, all reaches at once (editPose), then all tasks
-// at once (applyTasks).
+// Carried out in this order: all turns as listed, all scales, all moves as listed, all reaches at once (editPose), then
+// all tasks at once (applyTasks).
 struct PoseEdits {
   std::vector<JointTurn> turns;
+  std::vector<JointScale> scales;
   std::vector<JointMove> moves;
   std::vector<JointReach> reaches;
   std::vector<TaskEdit> tasks = {};
@@ -47,6 +54,8 @@ struct PoseEdits {
 
 // "head=y:30" or "head=x:10,y:30": axes x, y, z; degrees. Throws Error kBadArgument that quotes the text.
 std::vector<JointTurn> parseTurn(std::string_view text);
+// "head=1.5"
+JointScale parseScale(std::string_view text);
 // "handle_07=0,0.1,0"
 JointMove parseMove(std::string_view text);
 JointReach parseReach(std::string_view text);
@@ -62,6 +71,7 @@ struct NamedPose {
 
 // {"poses": [{"name": "wave",
 //             "turn":  [{"joint": "head", "axis": [0, 1, 0], "degrees": 30}],
+//             "scale": [{"joint": "head", "factor": 1.5}],
 //             "move":  [{"joint": "hips", "offset": [0, -0.1, 0]}],
 //             "reach": [{"joint": "hand.L", "target": [0.4, 1.2, 0.3], "pole": [0, 1, -1], "base": "chest"}],
 //             "tasks": [{"kind": "look-at", "joint": "head", "target": [0, 1.6, 2], "weight": 2, "priority": 1}]}]}

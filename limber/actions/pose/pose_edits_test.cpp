@@ -59,7 +59,7 @@ TEST(PoseFile, HoldsNamedPoses) {
   const std::vector<NamedPose> poses = parsePoses(R"({"poses": [
     {"name": "wave", "turn": [{"joint": "head", "axis": [0, 2, 0], "degrees": 30}],
      "reach": [{"joint": "hand", "target": [1, 2, 3], "pole": [0, 0, 1], "base": "chest"}]},
-    {"name": "crouch", "move": [{"joint": "hips", "offset": [0, -0.1, 0]}]}]})");
+    {"name": "crouch", "scale": [{"joint": "head", "factor": 1.5}], "move": [{"joint": "hips", "offset": [0, -0.1, 0]}]}]})");
   ASSERT_EQ(poses.size(), 2u);
   EXPECT_EQ(poses[0].name, "wave");
   EXPECT_EQ(poses[0].edits.turns[0].axis, Vec3(0, 1, 0));
@@ -68,6 +68,16 @@ TEST(PoseFile, HoldsNamedPoses) {
   EXPECT_EQ(far[0].edits.turns[0].axis, Vec3(0, 1, 0));
   EXPECT_EQ(*poses[0].edits.reaches[0].base, "chest");
   EXPECT_EQ(poses[1].edits.moves[0].offset, Vec3(0, -0.1, 0));
+  EXPECT_EQ(poses[1].edits.scales[0].factor, 1.5);
+}
+
+TEST(PoseFile, AScaleIsAboveZero) {
+  EXPECT_EQ(parseScale("head=0.5").factor, 0.5);
+  for (const char* text : {"head=0", "head=-1", "head=", "head=big", "head=1,2,3", "=2"}) {
+    EXPECT_THROW(parseScale(text), Error) << text;
+  }
+  EXPECT_THROW(parsePoses(R"({"poses": [{"name": "a", "scale": [{"joint": "b", "factor": 0}]}]})"), Error);
+  EXPECT_THROW(parsePoses(R"({"poses": [{"name": "a", "scale": [{"joint": "b"}]}]})"), Error);
 }
 
 TEST(PoseFile, ErrorsNameTheEntry) {

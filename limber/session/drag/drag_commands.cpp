@@ -1,6 +1,7 @@
 #include "limber/session/drag/drag_commands.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "limber/session/drag/standing_feet.h"
 #include "limber/session/edit/mirror_pose.h"
@@ -84,6 +85,23 @@ void apply(const SetTurn& c, SessionState& next) {
     const Vec3 axis = c.turn.isZero(0) ? Vec3(Vec3::UnitY()) : c.turn;  // no degrees: about any axis
     return drag.turned(axis, c.turn.norm());
   });
+}
+
+void apply(const SetScale& c, SessionState& next) {
+  if (!std::isfinite(c.scale) || !(c.scale > 0)) refuse("the scale is not above 0");
+  if (next.movement.chosen && next.movement.clips[*next.movement.chosen].base) {
+    refuse("keys over a recorded motion hold no scale", {}, "scale the joint where no clip is shown");
+  }
+  const Index joint = requireJoint(next, c.joint);
+  std::vector<Index> scaled = {joint};
+  for (const DragFollower& follower : followersOf(next, joint, c.with, c.mirrored)) scaled.push_back(follower.joint);
+  const std::vector<Joint>& joints = next.rig->skeleton().joints;
+  for (const Index j : scaled) {
+    Vec3& local = next.pose.locals[j].scale;
+    local = c.scale * (c.relative ? local : joints[j].rest.scale);
+  }
+  followPose(next, [](const PinnedTarget&) { return true; });
+  authored(next);
 }
 
 }  // namespace limber

@@ -10,6 +10,7 @@ namespace limber {
 
 void apply(const PlaceJoint& c, SessionState& next);
 void apply(const SetTurn& c, SessionState& next);
+void apply(const SetScale& c, SessionState& next);
 
 // What a drag of `joint` works on, with others that do the same and, mirrored, with their mirror images.
 DragScene dragSceneOf(const SessionState& now, Index joint, const std::vector<std::string>& with, bool mirrored);
