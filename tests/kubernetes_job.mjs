@@ -61,10 +61,10 @@ check('a pod has the processors that its jobs ask for',
   new RegExp(`--jobs ${container.resources.requests.cpu}\\b`).test(container.args.join(' ')));
 // Entries that failed are no reason for another try; all else is told to the cluster.
 const program = join(folder, 'limber');
+writeFileSync(program, '#!/bin/sh\nexit $EXIT_CODE\n'); // once: a program that was just written may still count as open
+chmodSync(program, 0o755);
 const endsWith = (code) => {
-  writeFileSync(program, `#!/bin/sh\nexit ${code}\n`);
-  chmodSync(program, 0o755);
-  const env = { ...process.env, PATH: `${folder}:${process.env.PATH}`, JOB_COMPLETION_INDEX: '0' };
+  const env = { ...process.env, PATH: `${folder}:${process.env.PATH}`, JOB_COMPLETION_INDEX: '0', EXIT_CODE: `${code}` };
   return spawnSync(container.command[0], [...container.command.slice(1), ...container.args], { env }).status;
 };
 check('exit codes of the program are those of the pod, but for 1',
