@@ -45,6 +45,7 @@ class PartMaker {
     for (Index i = 0; i < joints.size(); ++i) indices(i);
     joinFeet();
     joinTrunks();
+    giveForearmsHands();
     giveFeetToes();
     for (Part& part : parts_) completePath(part);
     dropToesBehind();
@@ -253,6 +254,23 @@ class PartMaker {
       trunk.branches.insert(trunk.branches.end(), parts_[p].joints.begin(), parts_[p].joints.end());
       parts_[p].joints.clear();
       moveInto(p, *first);
+    }
+  }
+
+  // What looks like the only digit of a forearm begins with its hand.
+  void giveForearmsHands() {
+    for (std::size_t arm = 0; arm < parts_.size(); ++arm) {
+      if (parts_[arm].kind != PartKind::kArm || !parts_[arm].middle || parts_[arm].end) continue;
+      std::vector<std::size_t> digits;
+      for (std::size_t p = 0; p < parts_.size(); ++p) {
+        if (parts_[p].kind == PartKind::kFinger && parts_[p].carrier == arm && !parts_[p].joints.empty())
+          digits.push_back(p);
+      }
+      if (digits.size() != 1) continue;
+      std::vector<Index>& digit = parts_[digits[0]].joints;
+      parts_[arm].end = digit.front();
+      parts_[arm].joints.push_back(digit.front());
+      digit.erase(digit.begin());
     }
   }
 

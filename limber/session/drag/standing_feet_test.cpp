@@ -59,6 +59,20 @@ TEST(StandingFeet, LimbsFollowOnBodiesAndOnHandlesThatMakeChains) {
   EXPECT_FALSE(opened("biped", false).state().ik);
 }
 
+// Handles of a hand are small and in a row, as a finger's are.
+TEST(StandingFeet, ArmsOfHandlesEndInHands) {
+  Session session = opened("biped");
+  Progress progress;
+  for (const Index handles : {20u, 28u, 36u}) {
+    session.run(SetHandles{handles}, progress);
+    for (const Side side : {Side::kLeft, Side::kRight}) {
+      const Part* arm = session.state().rig->anatomy().find(PartKind::kArm, side);
+      ASSERT_TRUE(arm) << handles;
+      EXPECT_TRUE(arm->end) << handles;
+    }
+  }
+}
+
 TEST(StandingFeet, AreHeldOnceForEachLegThatStands) {
   EXPECT_EQ(opened("biped").state().targets.size(), 2u);
   EXPECT_EQ(opened("quadruped").state().targets.size(), 4u);
