@@ -157,9 +157,9 @@ const cases = {
     assert.ok(served());
     const { joints, undo, name } = await sessionState(page);
     assert.equal(joints.length, 20);
-    assert.equal(undo, 'place_joint');
+    assert.equal(undo, 'attach_member', 'its prey');
     const low = (await jointPosition(page, joints.at(-1).name))[1];
-    assert.ok(low < 0.1, `the head is at ${low} m`);
+    assert.ok(low < 0.45, `the snout is at ${low} m, at rest at 0.85`);
     await page.locator('#undo').click();
     await settled(page);
     assert.equal((await sessionState(page)).name, name);
