@@ -75,6 +75,9 @@ export function outliner(studio: Studio, page: PageStore, handles: HandleView): 
         list.setAttribute('aria-activedescendant', row.id);
       }
     }
+    // Another model may have fewer joints.
+    const active = list.getAttribute('aria-activedescendant');
+    if (active !== null && !list.querySelector(`#${active}`)) list.removeAttribute('aria-activedescendant');
     pin.disabled = reset.disabled = name.disabled = selected === null || !session;
     pin.setAttribute('aria-pressed', String(selected !== null && pinned.has(selected)));
   });
