@@ -142,8 +142,8 @@ const cases = {
         return { href, top };
       };
       const before = await heights();
-      const { joints } = await sessionState(page), top = joints.reduce((best, one) => (one.position?.[1] > (best.position?.[1] ?? -1) ? one : best), joints.at(-1));
-      const at = await jointPlace(page, top.name);
+      const { joints } = await sessionState(page), places = await Promise.all(joints.map(({ name }) => jointPlace(page, name)));
+      const at = places.reduce((highest, place) => (place.y < highest.y ? place : highest));
       await dragMouse(page, at, { x: at.x, y: at.y - 60 });
       assert.equal((await sessionState(page)).posed, true);
       const after = await heights();
