@@ -217,9 +217,10 @@ std::string poseHelp() {
          "(leftHand).\n"
          "Names in the examples are those of handles (rigged.glb) and of the template humanoid (hero.glb).\n"
          "The file that --poses names: {\"poses\": [{\"name\": \"wave\", \"turn\": [{\"joint\": \"head\", \"axis\": "
-         "[0, 1, 0],\n\"degrees\": 30}], \"move\": [{\"joint\": \"hips\", \"offset\": [0, -0.1, 0]}], \"reach\": "
-         "[{\"joint\": \"hand.L\",\n\"target\": [0.4, 1.2, 0.3], \"pole\": [0, 1, -1], \"base\": \"chest\"}], "
-         "\"tasks\": [{\"kind\": \"look-at\", \"joint\": \"head\",\n\"target\": [0, 1.6, 2], \"weight\": 2, "
+         "[0, 1, 0],\n\"degrees\": 30}], \"scale\": [{\"joint\": \"head\", \"factor\": 1.2}], "
+         "\"move\": [{\"joint\": \"hips\", \"offset\": [0, -0.1, 0]}],\n\"reach\": "
+         "[{\"joint\": \"hand.L\", \"target\": [0.4, 1.2, 0.3], \"pole\": [0, 1, -1], \"base\": \"chest\"}],\n"
+         "\"tasks\": [{\"kind\": \"look-at\", \"joint\": \"head\", \"target\": [0, 1.6, 2], \"weight\": 2, "
          "\"priority\": 1}]}]}  (docs/poses.schema.json)\n"
          "\nExamples:\n"
          "  limber pose rigged.glb --turn handle_03.L=z:30 --move handle_07.L=0,0.1,0 -o posed.glb\n"
@@ -250,7 +251,7 @@ void addPoseCommand(CLI::App& program) {
     command->add_option(name, values, description)->type_name(form)->allow_extra_args(false);
   };
   addMany("--turn", options->turns, "turn a joint about axes of the world by degrees", "JOINT=y:30");
-  addMany("--scale", options->scales, "scale a joint, and what hangs on it, by a factor", "JOINT=1.5");
+  addMany("--scale", options->scales, "scale a joint with its children by a factor", "JOINT=1.5");
   addMany("--move", options->moves, "move a joint, in metres", "JOINT=x,y,z");
   addMany("--reach", options->reaches, "bring a joint to a point; the joints above it turn", "JOINT=x,y,z");
   addMany("--pole", options->poles, "the point to which the middle of a reaching limb bends", "JOINT=x,y,z");

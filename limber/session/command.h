@@ -162,7 +162,7 @@ struct SetTurn {
   }
 };
 
-// The joint scaled so from its rest pose, along all axes, about itself; what hangs on it comes along. Targets of pinned
+// The joint scaled so from its rest pose, along all axes, about itself, its children with it. Targets of pinned
 // joints go where these are then. Refused where a recorded motion is shown: keys over one hold no scale.
 struct SetScale {
   std::string joint;

@@ -23,7 +23,7 @@ struct JointTurn {
 
 struct JointScale {
   std::string joint;
-  double factor = 1;  // above 0, along all axes; the joint's surface and what hangs on it grow
+  double factor = 1;  // above 0, along all axes; its surface and its children grow
   std::string where = {};
 };
 

@@ -192,7 +192,7 @@ Collapser::JointEnd Collapser::jointEnd(Index e) const {
     if (longer == kNoIndex || !crossesOf(g.to) || ends_[longer].isOnPlane) return {longer, 0};
     return {kNoIndex, costOf(longer)};
   }
-  if (costOf(longer) < costOf(other)) std::swap(longer, other);
+  if (longer == kNoIndex || (other != kNoIndex && costOf(longer) < costOf(other))) std::swap(longer, other);
   if (other == kNoIndex) return {kNoIndex, costOf(longer)};
   if (crossesOf(g.to) && !ends_[longer].isOnPlane) return {kNoIndex, costOf(longer) + costOf(other)};
   return {longer, costOf(other)};

@@ -39,7 +39,7 @@ class TreeMaker {
     neighbors_[b].push_back(a);
   }
   std::vector<VertexPair> closestFirst() const;
-  // The handle on the plane that `handle` hangs on by way of others beside it, none so far or one; itself if on the plane.
+  // The handle on the plane that `handle` is linked to through others beside it, at most one; itself if on the plane.
   Index onPlaneNear(Index handle) { return onPlane(handle) ? handle : planeOf_[besidePlane_.find(orbitOf(handle))]; }
 
   void joinNeighbors();
@@ -50,9 +50,9 @@ class TreeMaker {
   double volume(Index h) const { return level_.weights[h] * (level_.spheres[h].radius + 1e-9) + 1e-15; }
 
   const SphereMeshLevel& level_;
-  DisjointSets sets_;                          // of orbits
-  DisjointSets besidePlane_;                   // of those of them that are not on the plane
-  std::vector<Index> planeOf_;                 // per such set, by its first: the handle on the plane that it hangs on
+  DisjointSets sets_;           // of orbits
+  DisjointSets besidePlane_;    // of those of them that are not on the plane
+  std::vector<Index> planeOf_;  // per such set, by its first: the handle on the plane that it is linked to
   std::vector<std::vector<Index>> neighbors_;  // of the tree, per handle
 };
 
@@ -90,8 +90,8 @@ std::vector<VertexPair> TreeMaker::closestFirst() const {
   return edges;
 }
 
-// What the plane's handles hang on is on the plane as well: on one handle of a pair they would have to hang on the other
-// too. So two trees that both have handles on the plane are joined there.
+// Two trees that both have handles on the plane are joined there: a handle on the plane that was the child of one of a
+// pair would have to be the other's child too.
 void TreeMaker::joinNeighbors() {
   for (const auto& [a, b] : closestFirst()) {
     if (!sets_.unite(orbitOf(a), orbitOf(b))) continue;

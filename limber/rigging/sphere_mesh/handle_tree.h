@@ -18,9 +18,9 @@ struct HandleTree {
 // A spanning tree of the level's edges that prefers long borders, since a limb meets the body where both are widest;
 // between pieces that are apart short gaps, as everywhere where the level has no borders. It is rooted at the most central
 // sphere: the one with the least sum of distances along the tree to all others, each weighted by its volume. On a
-// symmetric level the tree is its own mirror image: spheres on the plane are joined to each other, those that meet by way
-// of a pair alone too, and the root is one of them; only where none is on the plane the root is one of a pair, and its
-// image hangs on it. Cost: O(#H log #H).
+// symmetric level the tree is its own mirror image: spheres on the plane are joined to each other, those that meet through
+// a pair alone too, and the root is one of them; only where none is on the plane the root is one of a pair, and its
+// image is its child. Cost: O(#H log #H).
 HandleTree handleTree(const SphereMeshLevel& level);
 
 }  // namespace limber

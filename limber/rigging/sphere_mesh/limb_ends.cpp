@@ -4,10 +4,11 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
-#include <queue>
+#include <span>
 
 #include "limber/core/disjoint_sets.h"
 #include "limber/core/grouped.h"
+#include "limber/core/shortest_paths.h"
 
 namespace limber {
 
@@ -98,20 +99,11 @@ class EndFinder {
 
   std::vector<float> distancesFrom(Index source) const {
     std::vector<float> distances(count(), std::numeric_limits<float>::infinity());
-    using Entry = std::pair<float, Index>;
-    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
     distances[source] = 0;
-    queue.push({0, source});
-    while (!queue.empty()) {
-      const auto [distance, sphere] = queue.top();
-      queue.pop();
-      if (distance > distances[sphere]) continue;
-      for (const Neighbor& next : neighbors_.of(sphere)) {
-        if (distance + next.distance >= distances[next.sphere]) continue;
-        distances[next.sphere] = distance + next.distance;
-        queue.push({distances[next.sphere], next.sphere});
-      }
-    }
+    const auto forEachNeighbor = [&](Index sphere, const auto& visit) {
+      for (const Neighbor& next : neighbors_.of(sphere)) visit(next.sphere, next.distance);
+    };
+    shortenPaths(std::span<const Index>(&source, 1), distances, forEachNeighbor, [](Index, Index) {});
     return distances;
   }
 

@@ -36,7 +36,7 @@ bool isBodyWithLimbs(const Anatomy& anatomy) {
   return anatomy.confidence >= kDoubtful && std::any_of(anatomy.parts.begin(), anatomy.parts.end(), isLimb);
 }
 
-// Of handles: one that hangs on two that can turn, or more.
+// Whether a handle is below two that can turn, or more.
 bool hasChains(const Skeleton& handles) {
   if (handles.boneShape != BoneShape::kSphere) return false;
   for (Index j = 0; j < handles.jointCount(); ++j) {
