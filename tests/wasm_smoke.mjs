@@ -133,6 +133,8 @@ cases['a session: the pose that the native program makes of its record'] = () =>
   run({ do: 'set_turn', joint: joints[1].name, turn: [0, 22.3607, 11.1803], relative: true });
   run({ do: 'set_turn', joint: joints[1].name, turn: [10, -20, 30], with: [joints[2].name] });
   session.turns().turns.slice(7, 10).forEach((value, i) => assert.ok(Math.abs(value - [10, -20, 30][i]) < 1e-4));
+  run({ do: 'set_scale', joint: joints[2].name, scale: 1.25 });
+  assert.deepEqual([...session.scales().scales], joints.map((_, joint) => (joint === 2 ? 1.25 : 1)));
   run({ do: 'place_joint', joint: tip.name, position: [x + 0.1, y + 0.1, 0] });
   run({ do: 'set_handles', count: 30 });
   run({ do: 'mirror_pose', from: 'left' });

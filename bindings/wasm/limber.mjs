@@ -419,6 +419,12 @@ function createSession(engine, handle = engine._limber_session_new()) {
       const result = call(engine, engine._limber_session_turns, [handle]);
       return result.ok ? { ok: true, turns: new Float32Array(result.bytes.buffer) } : result;
     },
+    /** For each joint how many times as large it is as in its rest pose, as set_scale takes it.
+     *  @type {() => { ok: true, scales: Float32Array } | Failure} */
+    scales: () => {
+      const result = call(engine, engine._limber_session_scales, [handle]);
+      return result.ok ? { ok: true, scales: new Float32Array(result.bytes.buffer) } : result;
+    },
     /** The surface as bound. @type {() => { ok: true, model: SurfaceModel } | Failure} */
     model: () => {
       const result = call(engine, engine._limber_session_model, [handle]);

@@ -105,6 +105,16 @@ std::vector<float> turnArray(const limber::SessionState& state) {
   return values;
 }
 
+// #J times how many times as large it is as in its rest pose, along all axes.
+std::vector<float> scaleArray(const limber::SessionState& state) {
+  std::vector<float> values;
+  const std::vector<limber::Joint>& joints = state.rig->skeleton().joints;
+  for (Index j = 0; j < joints.size(); ++j) {
+    values.push_back(static_cast<float>(state.pose.locals[j].scale.norm() / joints[j].rest.scale.norm()));
+  }
+  return values;
+}
+
 Json tangentsJson(const limber::SessionState& state, Index joint) {
   Json list = Json::array();
   for (const limber::CurveTangent& at : limber::curveTangents(state.movement, state.rig->skeleton(), joint)) {
@@ -195,8 +205,8 @@ std::string pinnedOf(const limber::SessionState& state) {
 CallResult stateAfter(const limber::SessionScene& scene, const limber::Command& command) {
   const bool frame =
       std::holds_alternative<limber::UpdateDrag>(command) || std::holds_alternative<limber::TurnDrag>(command) ||
-      std::holds_alternative<limber::MoveDrag>(command) || std::holds_alternative<limber::SetTime>(command) ||
-      std::holds_alternative<limber::SetClock>(command);
+      std::holds_alternative<limber::ScaleDrag>(command) || std::holds_alternative<limber::MoveDrag>(command) ||
+      std::holds_alternative<limber::SetTime>(command) || std::holds_alternative<limber::SetClock>(command);
   return {true, bytesOf(skinArray(scene.session())),
           frame ? pinnedOf(scene.session().state()) : textOf(limber::sceneState(scene))};
 }
@@ -450,6 +460,10 @@ LIMBER_EXPORT CallResult* limber_session_handles(const SessionHandle* handle) {
 
 LIMBER_EXPORT CallResult* limber_session_turns(const SessionHandle* handle) {
   return guarded({}, [&]() -> CallResult { return {true, bytesOf(turnArray(handle->session().state())), "{}"}; });
+}
+
+LIMBER_EXPORT CallResult* limber_session_scales(const SessionHandle* handle) {
+  return guarded({}, [&]() -> CallResult { return {true, bytesOf(scaleArray(handle->session().state())), "{}"}; });
 }
 
 LIMBER_EXPORT CallResult* limber_session_model(const SessionHandle* handle) {

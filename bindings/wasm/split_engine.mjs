@@ -21,7 +21,7 @@ const wasmSplit = (...args) => execFileSync('wasm-split', [...features, ...args]
 function firstMinute(limber) {
   const session = limber.createSession();
   const shown = () => {
-    for (const what of ['model', 'skin', 'handles', 'turns', 'places', 'sourceJoints', 'weights', 'posed']) assert.ok(session[what]().ok, what);
+    for (const what of ['model', 'skin', 'handles', 'turns', 'scales', 'places', 'sourceJoints', 'weights', 'posed']) assert.ok(session[what]().ok, what);
   };
   const run = (command) => {
     const step = session.run(command);

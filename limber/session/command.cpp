@@ -24,7 +24,8 @@ template <class E>
 using Word = std::pair<E, std::string_view>;
 
 constexpr auto wordsOf(DragMode) {
-  return std::to_array<Word<DragMode>>({{DragMode::kMove, "move"}, {DragMode::kTurn, "turn"}});
+  return std::to_array<Word<DragMode>>(
+      {{DragMode::kMove, "move"}, {DragMode::kTurn, "turn"}, {DragMode::kScale, "scale"}});
 }
 constexpr auto wordsOf(MirrorFrom) {
   return std::to_array<Word<MirrorFrom>>(

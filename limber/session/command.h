@@ -85,7 +85,8 @@ struct UnpinJoint {
 
 // Move: the joint slides in the plane that faces the camera, and keeps its distance from the camera when that moves.
 // Turn: the joint swings about its parent, around the camera's axis; a root rolls under the pointer like a trackball.
-enum class DragMode { kMove, kTurn };
+// Scale: the joint grows along all axes as the pointer goes up, and shrinks as it goes down, its children with it.
+enum class DragMode { kMove, kTurn, kScale };
 struct BeginDrag {
   std::string joint;
   DragMode mode = DragMode::kMove;
@@ -115,6 +116,13 @@ struct TurnDrag {
 
   static constexpr std::string_view kName = "turn_drag";
   void fields(auto& field) { field("axis", axis)("degrees", degrees); }
+};
+// The dragged joint is so many times as large along all axes; counts from where the drag, one that scales, began, too.
+struct ScaleDrag {
+  double scale = 1;  // above 0
+
+  static constexpr std::string_view kName = "scale_drag";
+  void fields(auto& field) { field("scale", scale); }
 };
 // The dragged joint goes along with a hand that has hold of it: by an offset in metres, and turned about its own origin
 // by a rotation vector in degrees. Counts from where the drag, one that moves, began.
@@ -587,11 +595,11 @@ struct RigFromAnimation {
 
 using Command =
     std::variant<OpenSample, OpenFile, SetHandles, ChooseMethods, PinJoint, UnpinJoint, BeginDrag, UpdateDrag, TurnDrag,
-                 MoveDrag, EndDrag, CancelDrag, SetIk, SetTarget, ClearTarget, SetLimits, ResetJoint, ResetPose,
-                 MirrorPose, SetRestPose, RenameJoint, AddMotion, AddSampleMotion, RetargetMotion, SetContact, AddClip,
-                 RemoveClip, RenameClip, ChooseClip, SetTime, SetKey, EditKeys, DeleteKeys, SetJointKey,
-                 SetInterpolation, SetTangents, PasteKeys, PaintWeights, LockWeights, MirrorWeights, AddJoint,
-                 DeleteJoint, ReparentJoint, PlaceJoint, SetTurn, SetScale, ApplyPose, ApplyTasks, Undo, Redo,
+                 ScaleDrag, MoveDrag, EndDrag, CancelDrag, SetIk, SetTarget, ClearTarget, SetLimits, ResetJoint,
+                 ResetPose, MirrorPose, SetRestPose, RenameJoint, AddMotion, AddSampleMotion, RetargetMotion,
+                 SetContact, AddClip, RemoveClip, RenameClip, ChooseClip, SetTime, SetKey, EditKeys, DeleteKeys,
+                 SetJointKey, SetInterpolation, SetTangents, PasteKeys, PaintWeights, LockWeights, MirrorWeights,
+                 AddJoint, DeleteJoint, ReparentJoint, PlaceJoint, SetTurn, SetScale, ApplyPose, ApplyTasks, Undo, Redo,
                  AddSample, AddFile, RemoveMember, ChooseMember, RenameMember, PlaceMember, AttachMember, DetachMember,
                  SetClock, SetDeformer, TransferRig, RigFromAnimation, JoinClips>;
 

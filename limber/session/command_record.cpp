@@ -13,7 +13,8 @@ bool isOneOf(const Command& command) {
 
 void CommandRecord::add(const Command& command) {
   if (isOneOf<OpenSample, OpenFile>(command)) commands_.clear();
-  const bool onlyLast = isOneOf<UpdateDrag, TurnDrag, MoveDrag, SetHandles, SetTime, SetClock, ChooseMember>(command);
+  const bool onlyLast =
+      isOneOf<UpdateDrag, TurnDrag, ScaleDrag, MoveDrag, SetHandles, SetTime, SetClock, ChooseMember>(command);
   if (onlyLast && !commands_.empty() && commands_.back().index() == command.index()) commands_.pop_back();
   commands_.push_back(command);
 }

@@ -24,6 +24,7 @@ std::vector<Command> oneOfEach() {
           BeginDrag{"hand.L", DragMode::kTurn, kRay, {0, 0.5, -1}, {"head", "foot.R"}, true},
           UpdateDrag{kRay, {1, 0, -1}, true},
           TurnDrag{{0, 2, 1}, -35.5},
+          ScaleDrag{1.25},
           MoveDrag{{0.1, 0, -0.25}, {0, 30, 0.5}},
           EndDrag{true},
           CancelDrag{},
@@ -104,6 +105,7 @@ TEST(Command, JsonKeepsEveryCommandAndEveryField) {
   EXPECT_TRUE(only<OpenSample>(back).limbsFollow);
   EXPECT_TRUE(only<OpenFile>(back).limbsFollow);
   EXPECT_EQ(only<TurnDrag>(back).degrees, -35.5);
+  EXPECT_EQ(only<ScaleDrag>(back).scale, 1.25);
   EXPECT_EQ(only<MoveDrag>(back).turn, Vec3(0, 30, 0.5));
   EXPECT_EQ(only<SetIk>(back).solver, "fabrik");
   EXPECT_EQ(only<SetDeformer>(back).deformer, "delta-mush");

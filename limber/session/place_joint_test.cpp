@@ -110,6 +110,25 @@ TEST_F(PlaceJointTest, AJointIsScaledFromItsRestPoseAndWhatHangsOnItComesAlong) 
   EXPECT_EQ(steps(), 4u);
 }
 
+TEST_F(PlaceJointTest, ADragThatScalesDoesWhatANumberDoesInOneStep) {
+  const std::string hips = name(0), hand = name(end(PartKind::kArm, Side::kLeft));
+  for (const std::string& joint : {hips, hand}) {
+    run(SetScale{joint, 1.2});
+    run(SetScale{joint, 1.5, {}, true, true});
+    const Pose scaled = session.state().pose;
+    const std::vector<PinnedTarget> feet = session.state().targets;
+    run(Undo{});
+    run(BeginDrag{joint, DragMode::kScale, {}, -Vec3::UnitZ(), {}, true});
+    run(ScaleDrag{0.7});
+    run(ScaleDrag{1.5});
+    run(EndDrag{});
+    EXPECT_TRUE(samePose(session.state().pose, scaled));
+    ASSERT_EQ(session.state().targets.size(), feet.size());
+    for (std::size_t t = 0; t < feet.size(); ++t) EXPECT_EQ(session.state().targets[t].position, feet[t].position);
+  }
+  EXPECT_EQ(steps(), 4u);
+}
+
 TEST_F(PlaceJointTest, LimitsHold) {
   const Index hand = end(PartKind::kArm, Side::kLeft);
   run(SetLimits{R"({"limber_limits": 1, "joints": {")" + name(hand) + R"(": {"type": "fixed"}}})"});

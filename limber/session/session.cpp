@@ -80,6 +80,7 @@ struct Session::Runner {
   void operator()(const BeginDrag& c) const {
     const SessionState now = state();
     const Index joint = requireJoint(now, c.joint);
+    if (c.mode == DragMode::kScale) requireScalable(now);
     DragScene scene = dragSceneOf(now, joint, c.with, c.mirrored);
     session.drag_ = std::make_unique<Drag>(std::move(scene), joint, c.mode, c.ray, c.view);
     session.record_->add(command);
@@ -96,6 +97,10 @@ struct Session::Runner {
   }
   void operator()(const TurnDrag& c) const {
     session.state_.pose = drag().turned(c.axis, c.degrees);
+    session.record_->add(command);
+  }
+  void operator()(const ScaleDrag& c) const {
+    session.state_.pose = drag().scaled(c.scale);
     session.record_->add(command);
   }
   void operator()(const MoveDrag& c) const {

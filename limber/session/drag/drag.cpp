@@ -84,6 +84,10 @@ std::optional<Pose> Drag::at(const Ray& ray, const Vec3& view, bool snapping) {
     const Vec3 offset = *now - gripAtStart_;
     return moved(snapping ? snappedOffset(offset) : offset);
   }
+  if (mode_ == DragMode::kScale) {
+    const double scale = scaleUnderPointer(*now, unit(view, "the view"));
+    return scaled(snapping ? snapScale(scale) : scale);
+  }
   const Quat turn = turnUnderPointer(*now, unit(view, "the view"));
   const Quat rotation = snapping ? snapTurn(scene_.snap, turn) : turn;
   Pose pose = scene_.start;
@@ -132,6 +136,13 @@ Pose Drag::turned(const Vec3& axis, double degrees) {
   return pose;
 }
 
+Pose Drag::scaled(double scale) const {
+  if (!std::isfinite(scale) || !(scale > 0)) throw Error(ErrorCode::kBadArgument, "the scale is not above 0");
+  Pose pose = scene_.start;
+  for (const DragFollower& m : moved_) pose.locals[m.joint].scale *= scale;
+  return pose;
+}
+
 Pose Drag::turnedTo(const Vec3& turn) {
   Pose pose = scene_.start;
   for (const DragFollower& m : moved_) {
@@ -171,6 +182,15 @@ Quat Drag::turnUnderPointer(const Vec3& grip, const Vec3& view) const {
   const Vec3 before = lever(gripAtStart_), after = lever(grip);
   const double angle = std::atan2(view.dot(before.cross(after)), before.dot(after));
   return Quat(Eigen::AngleAxisd(angle, view));
+}
+
+// Grows evenly as the pointer goes up; downwards the inverse, so that it stays above 0.
+double Drag::scaleUnderPointer(const Vec3& grip, const Vec3& view) const {
+  const Vec3& up = scene_.snap.up;
+  const Vec3 onScreen = up - view.dot(up) * view;
+  if (onScreen.isZero(0)) return 1;
+  const double rise = (grip - gripAtStart_).dot(onScreen.normalized()) / scene_.rollRadius;
+  return rise < 0 ? 1 / (1 - rise) : 1 + rise;
 }
 
 // In the world, from how the joint stood at the start to how it is to stand.

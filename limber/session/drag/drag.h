@@ -24,7 +24,7 @@ struct DragScene {
   Pose start;
   bool ik = false;
   std::vector<PinnedTarget> pinned;  // joints pinned while inverse kinematics is on
-  double rollRadius = 1;             // metres: a root that the pointer moves this far rolls by one radian
+  double rollRadius = 1;  // metres: a pointer that moves this far rolls a root by one radian, or doubles a scale
   std::string_view solver = kLimbSolver;
   std::vector<DragFollower> followers = {};
   DragSnap snap = {};  // of the dragged joint
@@ -53,10 +53,15 @@ class Drag {
   // an axis without direction.
   Pose turned(const Vec3& axis, double degrees);
 
+  // The pose with the joint so many times as large as at the start, along all axes, its children with it. Throws Error
+  // kBadArgument for a scale that is not above 0.
+  Pose scaled(double scale) const;
+
   // The pose with the joint, and those that do as it does, turned so from their rest poses (CurvePoint::turn); mirror
   // images turn as far as their originals do.
   Pose turnedTo(const Vec3& turn);
 
+  DragMode mode() const { return mode_; }
   Index joint() const { return moved_.front().joint; }
   // The joint and its followers.
   const std::vector<DragFollower>& dragged() const { return moved_; }
@@ -67,6 +72,7 @@ class Drag {
   void slide(Index joint, const Vec3& offset, Pose& pose) const;
   Vec3 snappedOffset(const Vec3& offset) const;
   Quat turnUnderPointer(const Vec3& grip, const Vec3& view) const;
+  double scaleUnderPointer(const Vec3& grip, const Vec3& view) const;
   Quat turnTo(Index joint, const Vec3& turn) const;
   void turnAboutParent(Index joint, const Quat& rotation, Pose& pose) const;
   void swing(Index joint, const Vec3& pivot, const Quat& rotation, Pose& pose) const;

@@ -61,9 +61,16 @@ DragScene dragSceneOf(const SessionState& now, Index joint, const std::vector<st
   return scene;
 }
 
+void requireScalable(const SessionState& now) {
+  if (now.movement.chosen && now.movement.clips[*now.movement.chosen].base) {
+    refuse("keys over a recorded motion hold no scale", {}, "scale the joint where no clip is shown");
+  }
+}
+
 void letGo(SessionState& next, const Drag& drag) {
   const Skeleton& skeleton = next.rig->skeleton();
   followPose(next, [&](const PinnedTarget& target) {
+    if (drag.mode() == DragMode::kScale) return true;  // all that is below it has moved
     return std::any_of(drag.dragged().begin(), drag.dragged().end(), [&](const DragFollower& f) {
       return f.joint == target.joint || isInLimbAbove(skeleton, f.joint, target.joint);
     });
@@ -89,9 +96,7 @@ void apply(const SetTurn& c, SessionState& next) {
 
 void apply(const SetScale& c, SessionState& next) {
   if (!std::isfinite(c.scale) || !(c.scale > 0)) refuse("the scale is not above 0");
-  if (next.movement.chosen && next.movement.clips[*next.movement.chosen].base) {
-    refuse("keys over a recorded motion hold no scale", {}, "scale the joint where no clip is shown");
-  }
+  requireScalable(next);
   const Index joint = requireJoint(next, c.joint);
   std::vector<Index> scaled = {joint};
   for (const DragFollower& follower : followersOf(next, joint, c.with, c.mirrored)) scaled.push_back(follower.joint);

@@ -1,5 +1,7 @@
 #include "limber/session/drag/drag.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "limber/core/error.h"
@@ -130,6 +132,27 @@ TEST(Drag, ARootRollsUnderThePointer) {
   // To the right: what faces the camera goes to the right.
   const Quat rotation(poseGlobals(skeleton, pose)[0].linear());
   EXPECT_LT(angleBetween(rotation, Quat(Eigen::AngleAxisd(0.5, Vec3::UnitY()))), 1e-9);
+}
+
+TEST(Drag, AScaledJointGrowsAsThePointerGoesUpAndItsChildrenComeAlong) {
+  const Skeleton skeleton = twoArmedBody(BoneShape::kSphere);
+  const Pose rest = restPose(skeleton);
+  const Vec3 elbow = at(skeleton, rest, kElbow), hand = at(skeleton, rest, kHand);
+  DragScene scene = sceneOf(skeleton, true);
+  scene.start.locals[kElbow].scale *= 2;
+  scene.followers = {{kOtherHand}};
+  Drag drag(scene, kElbow, DragMode::kScale, through(elbow), kView);
+  const auto scaleAt = [&](const Vec3& offset, bool snapping = false) {
+    return drag.at(through(elbow + offset), kView, snapping).value().locals[kElbow].scale.x() / 2;
+  };
+  EXPECT_NEAR(scaleAt({0.7, 1, 0}), 2, 1e-12);
+  EXPECT_NEAR(scaleAt({0, -1, 0}), 0.5, 1e-12);
+  EXPECT_NEAR(scaleAt({0, 0.47, 0}, true), 1.5, 1e-12);
+  const Pose pose = drag.scaled(1.5);
+  EXPECT_LT((at(skeleton, pose, kElbow) - elbow).norm(), 1e-12);
+  EXPECT_LT((at(skeleton, pose, kHand) - elbow - 3 * (hand - elbow)).norm(), 1e-12);
+  EXPECT_EQ(pose.locals[kOtherHand].scale, Vec3(Vec3::Constant(1.5)));
+  for (const double nothing : {0.0, -1.0, std::nan("")}) EXPECT_THROW(drag.scaled(nothing), Error);
 }
 
 TEST(Drag, WithInverseKinematicsTheLimbFollowsAndBonesKeepTheirLength) {

@@ -1,5 +1,6 @@
 #include "limber/session/drag/snap.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "limber/core/text/numbers.h"
@@ -48,6 +49,10 @@ Quat snapTurn(const DragSnap& snap, const Quat& turn) {
   const Eigen::AngleAxisd about(turn);
   const double step = snap.degrees * kDegree;
   return Quat(Eigen::AngleAxisd(step * std::round(about.angle() / step), about.axis()));
+}
+
+double snapScale(double scale) {
+  return std::max(1.0, std::round(10 * scale)) / 10;
 }
 
 }  // namespace limber

@@ -28,5 +28,7 @@ DragSnap snapOf(const RiggedModel& rig, Index joint);
 Vec3 snapPosition(const DragSnap& snap, const Vec3& position);
 // The same axis, by the nearest number of steps.
 Quat snapTurn(const DragSnap& snap, const Quat& turn);
+// The nearest tenth above 0.
+double snapScale(double scale);
 
 }  // namespace limber

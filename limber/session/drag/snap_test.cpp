@@ -40,6 +40,12 @@ TEST(Snap, TurnsKeepTheirAxis) {
   }
 }
 
+TEST(Snap, ScalesAreTenthsAbove0) {
+  EXPECT_EQ(snapScale(1.27), 1.3);
+  EXPECT_EQ(snapScale(0.98), 1);
+  EXPECT_EQ(snapScale(0.02), 0.1);
+}
+
 TEST(Snap, AFootOfABodyKnowsWhereTheFloorIs) {
   Session session;
   Progress progress;

@@ -85,6 +85,13 @@ Quat turnOf(const Session& session, const char* joint) {
   return session.state().pose.locals[session.state().rig->skeleton().find(joint).value()].rotation;
 }
 
+TEST(Movement, KeysOverARecordedMotionHoldNoScale) {
+  Session session = walking();
+  EXPECT_THROW(act(session, SetScale{"head", 1.5}), Error);
+  EXPECT_THROW(act(session, BeginDrag{"head", DragMode::kScale, {}}), Error);
+  act(session, BeginDrag{"head", DragMode::kTurn, {}});
+}
+
 TEST(Movement, AMotionOntoAModelIsAClipThatCanBeScrubbed) {
   Session session = person();
   const Pose before = session.state().pose;
