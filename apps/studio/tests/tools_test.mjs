@@ -134,6 +134,7 @@ const cases = {
     near((await turned(elbow)).turn, [0, 25.5, -40], 1e-4);
     assert.equal(await page.evaluate(() => document.activeElement.id), 'place-x');
     assert.equal((await sessionState(page)).undo, 'set_turn');
+    assert.ok((await page.locator('#turn-y').boundingBox()).width > 30, 'the number has no room');
     await page.locator('#turn-z').press('ArrowUp');
     await settled(page);
     near((await turned(elbow)).turn, [0, 25.5, -39], 1e-4);

@@ -60,7 +60,7 @@ export function scenePanel(studio: Studio, page: PageStore, places: Places): HTM
     const show = ({ placement }: SceneMember) => {
       if (document.activeElement !== input) input.value = String(Number(shown(placement).toFixed(decimals)));
     };
-    return { show, row: element('label', { class: 'number-field', for: id }, text, input) };
+    return { show, row: element('label', { class: 'placement-field', for: id }, text, input) };
   };
   const along = (axis: number) => (value: number, of: Placement) => ({ ...of, position: of.position.map((was, i) => (i === axis ? value : was)) as Vector });
   const reshape = (of: Placement, change: Partial<Placement>) => {
@@ -91,7 +91,7 @@ export function scenePanel(studio: Studio, page: PageStore, places: Places): HTM
   };
   const root = element('section', { class: 'card scene', 'aria-label': say('Scene'), id: 'scene' },
     list, element('div', { class: 'row' }, place, hold, letGo, remove), about,
-    element('details', { id: 'member-place' }, element('summary', {}, say('Place and size')), element('div', { class: 'number-fields' }, ...fields.map((one) => one.row))));
+    element('details', { id: 'member-place' }, element('summary', {}, say('Place and size')), element('div', { class: 'placement-fields' }, ...fields.map((one) => one.row))));
   let listed = '';
   page.watch(({ session, arranging }) => {
     const members = session?.members ?? [], of = member();
