@@ -22,6 +22,12 @@ const {
 const nodesOf = (glb) => new Map(JSON.parse(glb.subarray(20, 20 + glb.readUInt32LE(12)).toString()).nodes
   .map(({ name, translation = [0, 0, 0], rotation = [0, 0, 0, 1], scale = [1, 1, 1] }) => [name, [...translation, ...rotation, ...scale]]));
 
+/** The right hand, the joint above it, and how far they are apart in metres. */
+async function forearm() {
+  const hand = await jointOf('right hand'), { joints } = await sessionState(page), elbow = joints[joints.find(({ name }) => name === hand).parent].name;
+  return { hand, elbow, bone: async () => apart(await ar('joint', hand), await ar('joint', elbow)) };
+}
+
 const cases = {
   async 'begins where the device can, and looks for a surface'() {
     await enter();
@@ -154,12 +160,22 @@ const cases = {
   },
   async 'turning swings a handle about its parent'() {
     await pose('turn');
-    const name = await jointOf('right hand'), { joints } = await sessionState(page), parent = joints[joints.find((joint) => joint.name === name).parent].name;
-    const at = await jointSpot(name), reach = apart(await ar('joint', name), await ar('joint', parent)), before = await ar('joint', name);
+    const { hand, bone } = await forearm(), at = await jointSpot(hand), reach = await bone(), before = await ar('joint', hand);
     await drag(at, { x: at.x + 10, y: at.y - 40 });
-    assert.ok(apart(before, await ar('joint', name)) > 0.05);
-    assert.ok(Math.abs(apart(await ar('joint', name), await ar('joint', parent)) - reach) < 1e-4);
+    assert.ok(apart(before, await ar('joint', hand)) > 0.05);
+    assert.ok(Math.abs(await bone() - reach) < 1e-4);
     await shot('turned');
+  },
+  async 'scaling makes a handle larger as the finger goes up'() {
+    await pose('scale');
+    const { hand, elbow, bone } = await forearm(), at = await jointSpot(elbow), before = await bone();
+    assert.match(await line(), /larger/);
+    await drag(at, { x: at.x, y: at.y - 40 });
+    assert.ok(await bone() > 1.1 * before, `${before} to ${await bone()} m from ${elbow} to ${hand}`);
+    await shot('scaled');
+    await page.locator('#ar-undo').tap();
+    await settled(page);
+    assert.ok(Math.abs(await bone() - before) < 1e-5);
   },
   async 'the number of handles is chosen'() {
     const { length } = (await sessionState(page)).joints;

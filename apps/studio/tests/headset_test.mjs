@@ -143,6 +143,21 @@ const cases = {
     assert.ok(apart(at, after) > 0.05, 'it has not moved');
     assert.ok(Math.abs(apart(after, await ask('handle', parent)) - bone) < 1e-3, 'the bone keeps its length');
   },
+  async 'scaled by the ray it grows'() {
+    await act(...ready);
+    await pressCell('mode-scale');
+    const hand = await jointOf('left hand'), { joints } = await sessionState(page), elbow = joints[joints.find((one) => one.name === hand).parent].name;
+    const bone = async () => apart(await ask('handle', hand), await ask('handle', elbow)), before = await bone(), at = await ask('handle', elbow);
+    await act(['aim', 'right', [0.2, 1.3, -0.3], at]);
+    await act(['press', 'right', true]);
+    await act(['aim', 'right', [0.2, 1.3, -0.3], sum(at, [0, 0.1, 0])]);
+    await act(['press', 'right', false]);
+    await settled(page);
+    assert.ok(await bone() > 1.1 * before, `${before} to ${await bone()} m`);
+    await act(...ready);
+    await pressCell('ar-undo');
+    assert.ok(Math.abs(await bone() - before) < 1e-4);
+  },
   async 'a press on a handle selects it, and is no step'() {
     const { undo } = await sessionState(page), name = await jointOf('head'), at = await ask('handle', name);
     await act(['aim', 'right', [0.2, 1.3, -0.3], at]);

@@ -7,7 +7,8 @@ import assert from 'node:assert/strict';
 import { mkdirSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 import { Quaternion, Vector3 } from 'three';
-import { barriers, jointPlace, jointPosition, lastJointOf, launch, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
+import { barriers, download, jointPlace, jointPosition, lastJointOf, launch, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
+import { readUsd } from './usd_points.mjs';
 
 const [dist, output] = process.argv.slice(2).map((path) => resolve(path));
 mkdirSync(output, { recursive: true });
@@ -47,6 +48,11 @@ async function press(key) {
   await page.locator('main canvas').focus();
   await page.keyboard.press(key);
   await settled(page);
+}
+/** How far the surface reaches above a joint, in metres. */
+async function reachAbove(name) {
+  const { points } = readUsd(await download(page, () => page.locator('#export-as').selectOption('usdz')));
+  return Math.max(...points.map(([, y]) => y)) - (await jointPosition(page, name))[1];
 }
 /** Back to the pose at rest, nothing selected. */
 async function reset() {
@@ -128,13 +134,13 @@ const cases = {
   async 'typed numbers put the joint exactly there, each one step'() {
     await select(elbow);
     await page.locator('#exact summary').click();
+    assert.ok((await page.locator('#turn-y').boundingBox()).width > 30, 'the number has no room');
     await type('#turn-y', 25.5);
     near((await turned(elbow)).turn, [0, 25.5, 0], 1e-4);
     await type('#turn-z', -40, 'Tab');
     near((await turned(elbow)).turn, [0, 25.5, -40], 1e-4);
     assert.equal(await page.evaluate(() => document.activeElement.id), 'place-x');
     assert.equal((await sessionState(page)).undo, 'set_turn');
-    assert.ok((await page.locator('#turn-y').boundingBox()).width > 30, 'the number has no room');
     await page.locator('#turn-z').press('ArrowUp');
     await settled(page);
     near((await turned(elbow)).turn, [0, 25.5, -39], 1e-4);
@@ -177,6 +183,70 @@ const cases = {
     near([Math.hypot(...(await turned(right)).turn)], [30], 1e-3, 'the other side');
     await page.locator('#both-sides').click();
     await reset();
+  },
+  async 'a joint is scaled by a number, a drag, keys and the gizmo, each one step; the surface grows, and a file keeps it'() {
+    const head = await jointOf('head');
+    await select(head);
+    const rest = await reachAbove(head);
+    assert.equal(await valueOf('#scale'), 1);
+    await type('#scale', 1.5);
+    assert.equal((await sessionState(page)).undo, 'set_scale');
+    const grown = await reachAbove(head) / rest;
+    assert.ok(grown > 1.35 && grown < 1.55, `${grown} times as high`);
+    await page.screenshot({ path: join(output, 'tools_scaled.png') });
+    await press('Control+z');
+    assert.equal(await valueOf('#scale'), 1);
+    near([await reachAbove(head)], [rest], 1e-5);
+
+    await page.locator('#both-sides').click();
+    await select(left);
+    await type('#scale', 1.25);
+    await select(right);
+    assert.equal(await valueOf('#scale'), 1.25);
+    await page.locator('#both-sides').click();
+    await press('Control+z');
+
+    await press('Shift+S');
+    assert.equal(await page.locator('.pose [data-value=scale]').getAttribute('aria-pressed'), 'true');
+    const { x, y } = await jointPlace(page, head);
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await page.mouse.move(x, y - 20);
+    await page.mouse.move(x, y - 40);
+    await page.waitForFunction(() => Number(document.querySelector('#scale').value) > 1); // already while it is dragged
+    await page.mouse.up();
+    await settled(page);
+    assert.ok(await reachAbove(head) > 1.1 * rest);
+    await press('Control+z');
+    assert.equal(await valueOf('#scale'), 1);
+    await press('ArrowUp');
+    await press('ArrowUp');
+    near([await valueOf('#scale')], [1.05 ** 2], 0.006);
+    await press('Control+z');
+    await page.locator('.checks label', { hasText: 'Arrows' }).click();
+    const box = await gizmoX(head, [ringRadius, 0]);
+    await dragMouse(box.at, box.out.map((value) => 0.4 * value));
+    near([await valueOf('#scale')], [1.4], 0.1);
+    await page.screenshot({ path: join(output, 'tools_scaling.png') });
+    await page.locator('.checks label', { hasText: 'Arrows' }).click();
+    await type('#scale', 0);
+    assert.equal(await valueOf('#scale'), 0.01);
+    await type('#scale', 0.8);
+
+    const file = await download(page, () => page.locator('#export-as').selectOption('limber'));
+    const again = await openStudio(browser, server.address, { search: '?sample=stool' });
+    await again.page.locator('#file').setInputFiles({ name: 'scaled.limber', mimeType: 'application/octet-stream', buffer: file });
+    await again.page.waitForFunction(() => globalThis.limberStudio.state()?.name === 'biped');
+    await settled(again.page);
+    await again.page.locator('#exact summary').click();
+    await again.page.locator(`#joint-${(await sessionState(page)).joints.findIndex(({ name }) => name === head)}`).click();
+    await again.page.waitForFunction(() => document.querySelector('#scale').value === '0.8');
+    assert.deepEqual(again.errors, []);
+    await again.context.close();
+    await press('g');
+    await reset();
+    await select(left);
+    assert.equal(await valueOf('#scale'), 1);
   },
   async 'what is typed at the moment of a clip becomes a key'() {
     await page.locator('#add-clip').click();

@@ -15,6 +15,7 @@ export function bindShortcuts(studio: Studio, page: PageStore, viewport: Viewpor
   const plain: Record<string, () => void> = {
     'g': () => page.set({ mode: 'move' }),
     'r': () => page.set({ mode: 'turn' }),
+    'S': () => page.set({ mode: 'scale' }),
     'i': () => void studio.toggleIk(),
     's': () => page.set({ bothSides: !page.now.bothSides }),
     'm': () => void studio.mirrorPose(),

@@ -8,7 +8,7 @@ import { told } from '../words/engine';
 import type { KeptPose } from './pose_store';
 import { Store } from './store';
 
-export type DragMode = 'move' | 'turn';
+export type DragMode = 'move' | 'turn' | 'scale';
 /** Whose axes arrows and rings have. */
 export type GizmoSpace = 'world' | 'parent' | 'local' | 'view';
 export type Display = 'handles' | 'surface' | 'weights' | 'joint-weights' | 'parts' | 'stretch';

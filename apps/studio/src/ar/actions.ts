@@ -34,6 +34,7 @@ export const hasFloor = ({ ar }: PageState) => ar !== null && !(ar.sight === 'ca
 
 export const dragModes = (): { value: DragMode; text: string; icon: IconName }[] => [
   { value: 'move', text: say('Move'), icon: 'move' }, { value: 'turn', text: say('Turn'), icon: 'turn' },
+  { value: 'scale', text: say('Scale'), icon: 'scale' },
 ];
 
 export function arActions({ studio, page }: Desk, view: () => ArView | null): ArActions {

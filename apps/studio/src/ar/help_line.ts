@@ -24,6 +24,7 @@ const byFingers = () => ({
   size: say('Not its real size'),
   move: say('Drag a handle; walk with it to push or pull'),
   turn: say('Drag a handle to turn it about its parent'),
+  scale: say('Drag a handle: up makes it larger, down smaller'),
 });
 
 const byHands = () => ({
@@ -33,6 +34,7 @@ const byHands = () => ({
   size: say('Not its real size'),
   move: say('Pinch a handle and carry it, or drag it from afar with the ray'),
   turn: say('A near handle goes and turns with the hand. With the ray it turns about its parent'),
+  scale: say('Drag a handle with the ray: up makes it larger, down smaller'),
 });
 
 const troubles = (): Record<NonNullable<ArState['trouble']>, string> => ({

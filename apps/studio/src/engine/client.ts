@@ -53,7 +53,7 @@ const sameCommand = (a: Request, b: Request) => a.kind === 'run' && b.kind === '
 const changesDocument = ({ kind }: Request) => ['open', 'add', 'motion', 'transfer', 'run'].includes(kind);
 /** What the next of its kind replaces. */
 const frameOf = (request: Request) =>
-  (request.kind === 'run' && ['update_drag', 'turn_drag', 'move_drag', 'set_time', 'set_clock', 'choose_member'].includes(request.command.do) ? request.command.do : null);
+  (request.kind === 'run' && ['update_drag', 'turn_drag', 'scale_drag', 'move_drag', 'set_time', 'set_clock', 'choose_member'].includes(request.command.do) ? request.command.do : null);
 /** What is tried for a picture, what comes live and what is asked of a model that nobody waits for holds nobody up. */
 const quiet = ({ kind }: Request) => kind.startsWith('preview') || kind.startsWith('live') || kind === 'rig-check';
 const opens = (request: Request) => request.kind === 'open' || (request.kind === 'run' && opensModel(request.command));

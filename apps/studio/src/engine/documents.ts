@@ -374,7 +374,8 @@ export class Documents {
       return { skin: moved, posed: orThrow(session.posed()).posed, handles: orThrow(session.handles()).handles };
     });
     return {
-      skin, posed: orThrow(this.session.posed()).posed, handles: orThrow(this.session.handles()).handles, turns: orThrow(this.session.turns()).turns, pinned: this.pinned, source: orThrow(this.session.sourceJoints()).places,
+      skin, posed: orThrow(this.session.posed()).posed, handles: orThrow(this.session.handles()).handles, turns: orThrow(this.session.turns()).turns,
+      scales: orThrow(this.session.scales()).scales, pinned: this.pinned, source: orThrow(this.session.sourceJoints()).places,
       sourceSkin: this.sourceSkin(), variants, places: this.isPlaced ? orThrow(this.session.places()).places : none, others: [],
     };
   }

@@ -22,6 +22,8 @@ export interface Stance {
   /** 7 numbers each: the turn from the rest pose in degrees about x, y and z, as set_turn takes it; the rotation in the
    *  world as x, y, z, w. */
   turns: Float32Array;
+  /** How many times as large each is as in its rest pose, as set_scale takes it. */
+  scales: Float32Array;
   /** Joints that hold on to a place: feet where they stand. */
   pinned: number[];
   /** x, y, z of each joint that the chosen clip's motion was made for; empty where it was made here. */

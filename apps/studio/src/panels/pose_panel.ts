@@ -17,6 +17,7 @@ export function posePanel(studio: Studio, page: PageStore, poses: PoseShelf, vie
   const mode = choice<DragMode>(say('What dragging a handle does'), [
     { value: 'move', text: say('Move'), icon: 'move', keys: 'G' },
     { value: 'turn', text: say('Turn'), icon: 'turn', keys: 'R' },
+    { value: 'scale', text: say('Scale'), icon: 'scale', keys: 'Shift+S' },
   ], (value) => page.set({ mode: value }));
   const ik = button(say('Limbs follow'), () => void studio.toggleIk(), {
     keys: 'I', label: say('Limbs follow: inverse kinematics, a handle takes its limb along'), id: 'ik',
@@ -63,7 +64,7 @@ export function posePanel(studio: Studio, page: PageStore, poses: PoseShelf, vie
     element('div', { class: 'row' }, copy, paste, library),
     display.root, legend(page),
     element('div', { class: 'row checks' }, toggle(say('Bones'), 'bones'), toggle(say('Mesh lines'), 'wireframe'),
-      toggle(say('Arrows'), 'gizmo', say('Arrows and rings on the selected joint, for exact work (gizmo)')),
+      toggle(say('Arrows'), 'gizmo', say('Arrows, rings or boxes on the selected joint, for exact work (gizmo)')),
       toggle(say('Limits'), 'limits', say('How far joints may turn'))),
     limits(studio, page), exactFields(studio, page), tasks(studio, page, viewport));
 }

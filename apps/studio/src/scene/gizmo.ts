@@ -1,4 +1,4 @@
-// Arrows and rings on the selected joint, for exact work.
+// Arrows, rings and boxes on the selected joint, for exact work.
 import { Object3D, Quaternion } from 'three';
 import { TransformControls } from 'three/examples/jsm/controls/TransformControls.js';
 import { hasHandles, type PageStore } from '../app/state';
@@ -7,6 +7,8 @@ import type { HandleView } from './handle_view';
 import type { Viewport } from './viewport';
 
 const view: [number, number, number] = [0, 0, -1];
+const controlModes = { move: 'translate', turn: 'rotate', scale: 'scale' } as const;
+const minScale = 0.01;
 
 export class Gizmo {
   readonly controls: TransformControls;
@@ -43,7 +45,7 @@ export class Gizmo {
     });
   }
 
-  /** Whether the pointer is on an arrow or a ring. */
+  /** Whether the pointer is on an arrow, a ring or a box. */
   get axis() { return this.controls.object === undefined ? null : this.controls.axis; }
   get meant() { return this.controls.object !== undefined && this.controls.axis !== null; }
 
@@ -57,11 +59,12 @@ export class Gizmo {
       this.controls.detach();
       return;
     }
-    this.controls.setMode(mode === 'move' ? 'translate' : 'rotate');
-    this.controls.showZ = mode === 'move' || gizmoSpace !== 'view'; // the outer ring does the same
+    this.controls.setMode(controlModes[mode]);
+    this.controls.showZ = mode !== 'turn' || gizmoSpace !== 'view'; // the outer ring does the same
     if (this.held === null) {
       this.proxy.position.copy(this.handles.position(selected));
       this.axes(selected, this.proxy.quaternion);
+      this.proxy.scale.setScalar(1);
     }
     if (this.controls.object !== this.proxy) this.controls.attach(this.proxy);
   }
@@ -77,6 +80,7 @@ export class Gizmo {
   private snap() {
     const { snapping, session } = this.page.now, on = session !== null && snapping !== this.control;
     this.controls.setTranslationSnap(on ? session.snap.step : null);
+    this.controls.setScaleSnap(on ? 0.1 : null);
     this.controls.setRotationSnap(on ? (session.snap.degrees * Math.PI) / 180 : null);
   }
 
@@ -92,10 +96,17 @@ export class Gizmo {
   private change() {
     if (this.held === null) return;
     if (this.page.now.mode === 'move') return this.studio.updateDrag(this.ray(), view);
+    if (this.page.now.mode === 'scale') return this.studio.scaleDrag(this.scaled());
     const { x, y, z, w } = this.proxy.quaternion.clone().multiply(this.turned.clone().invert());
     const sine = Math.hypot(x, y, z);
     const degrees = (2 * Math.atan2(sine, w) * 180) / Math.PI;
     this.studio.turnDrag(sine > 1e-6 ? [x / sine, y / sine, z / sine] : [0, 1, 0], sine > 1e-6 ? degrees : 0);
+  }
+
+  /** By whichever box is pulled: joints are scaled along all axes. */
+  private scaled() {
+    const [least, , most] = this.proxy.scale.toArray().sort((a, b) => a - b);
+    return Math.max(minScale, most! > 1 ? most! : least!);
   }
 
   private ray() {

@@ -101,7 +101,7 @@ export class PointerInput {
     this.studio.cancelDrag();
   }
 
-  /** Arrows move or turn the selected joint as the camera sees it; where none is selected, the view. */
+  /** Arrows move, turn or scale the selected joint as the camera sees it; where none is selected, the view. */
   private key(event: KeyboardEvent) {
     if (event.key === 'Escape') return this.cancel();
     const { selected, session, mode, snapping } = this.page.now;
@@ -116,6 +116,7 @@ export class PointerInput {
       this.studio.turn(selected, axis.toArray(), (x - y) * (snapping ? session.snap.degrees : event.shiftKey ? 1 : 5));
       return;
     }
+    if (mode === 'scale') return this.studio.scale(selected, (snapping ? 1.1 : event.shiftKey ? 1.01 : 1.05) ** (x + y));
     const size = new Vector3(...session.box.max).distanceTo(new Vector3(...session.box.min));
     const length = snapping ? session.snap.step : size * (event.shiftKey ? 0.002 : 0.01);
     const offset = right.multiplyScalar(x).addScaledVector(up, y).multiplyScalar(length);

@@ -29,6 +29,7 @@ const icons = {
   redo: 'm12 4 4 4-4 4m4-4H8a4 4 0 0 0 0 8h3',
   move: 'M10 2v16M2 10h16M10 2 8 4m2-2 2 2M10 18l-2-2m2 2 2-2M2 10l2-2m-2 2 2 2m14-2-2-2m2 2-2 2',
   turn: 'M16 10a6 6 0 1 1-2-4.5M14 2v4h-4',
+  scale: 'M3 17h6v-6H3zM9 3h8v8M17 3l-7 7',
   mirror: 'M10 2v16M7 5 2 15h5zM13 5l5 10h-5z',
   reset: 'M4 10a6 6 0 1 0 2-4.5M6 2v4h4',
   save: 'M10 3v9m-4-4 4 4 4-4M4 16h12',

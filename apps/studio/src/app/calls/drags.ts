@@ -10,6 +10,7 @@ const ahead: Vector = [0, 0, -1];
 type DragUpdate =
   | { do: 'update_drag'; ray: Ray; view: Vector; snap: boolean }
   | { do: 'turn_drag'; axis: Vector; degrees: number }
+  | { do: 'scale_drag'; scale: number }
   | { do: 'move_drag'; offset: Vector; turn: Vector };
 
 export type DragCalls = ReturnType<typeof dragCalls>;
@@ -84,6 +85,8 @@ export function dragCalls(core: Core, { pinJoint }: RigCalls) {
     updateDrag(ray: Ray, view: Vector, snap = false) { dragTo({ do: 'update_drag', ray, view, snap }); },
     /** About the dragged joint's own place, from how it stood when the drag began. */
     turnDrag(axis: Vector, degrees: number) { dragTo({ do: 'turn_drag', axis, degrees }); },
+    /** So many times as large as when the drag, one that scales, began. */
+    scaleDrag(scale: number) { dragTo({ do: 'scale_drag', scale }); },
     /** As a hand carries it, from where it was when the drag, one that moves, began: metres, and degrees about an axis as one vector. */
     moveDrag(offset: Vector, turn: Vector) { dragTo({ do: 'move_drag', offset, turn }); },
     /** What the joints that are shown during a drag answer to. */
@@ -101,5 +104,6 @@ export function dragCalls(core: Core, { pinJoint }: RigCalls) {
       dragByKey(joint, 'move', { do: 'update_drag', ray: { origin: offset, direction: ahead }, view: ahead });
     },
     turn(joint: number, axis: Vector, degrees: number) { dragByKey(joint, 'turn', { do: 'turn_drag', axis, degrees }); },
+    scale(joint: number, scale: number) { dragByKey(joint, 'scale', { do: 'scale_drag', scale }); },
   };
 }

@@ -6,7 +6,7 @@ import type { KeyPlace } from '../state';
 import type { Core } from './core';
 
 /** Commands that leave the model in another pose, set by hand. */
-const poses = new Set(['end_drag', 'place_joint', 'set_turn', 'reset_joint', 'reset_pose', 'mirror_pose', 'apply_pose', 'apply_tasks']);
+const poses = new Set(['end_drag', 'place_joint', 'set_turn', 'set_scale', 'reset_joint', 'reset_pose', 'mirror_pose', 'apply_pose', 'apply_tasks']);
 
 export type KeyingCalls = ReturnType<typeof keyingCalls>;
 

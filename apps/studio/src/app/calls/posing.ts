@@ -34,6 +34,8 @@ export function posingCalls(core: Core) {
     async resetJoint(joint: number) { await core.run({ do: 'reset_joint', ...core.namedWith(joint) }); },
     /** Degrees about x, y and z, from the rest pose. */
     async setTurn(joint: number, turn: Vector) { await poseExactly({ do: 'set_turn', ...core.namedWith(joint), turn }); },
+    /** From the rest pose: 1 is as large as there. */
+    async setScale(joint: number, scale: number) { await poseExactly({ do: 'set_scale', ...core.namedWith(joint), scale }); },
     /** In the world, in metres: the limb comes along where limbs follow. */
     async moveJointTo(joint: number, position: Vector) { await poseExactly({ do: 'place_joint', ...core.namedWith(joint), position }); },
 

@@ -100,7 +100,7 @@ export class HandleOnRay extends HandleHold {
   protected send({ at }: Carried) { this.ar.desk.studio.updateDrag(this.rayTo(at), ahead); }
 }
 
-/** Turned about its parent, round the axis along which the user looks. */
+/** Turned about its parent, round the axis along which the user looks, or scaled as the ray goes up or down. */
 export class HandleSwing implements Gesture {
   begun = false;
   private readonly from: Ray;
@@ -112,7 +112,7 @@ export class HandleSwing implements Gesture {
     const { studio, handles } = ar.desk, ray = this.pointed(), to = handles.position(joint).sub(ray.origin).normalize();
     this.beside = new Quaternion().setFromUnitVectors(ray.direction, to);
     this.from = new Ray(ray.origin, to);
-    studio.beginDrag(joint, { origin: ray.origin.toArray(), direction: to.toArray() }, this.view(), 'turn');
+    studio.beginDrag(joint, { origin: ray.origin.toArray(), direction: to.toArray() }, this.view());
   }
 
   frame() {
