@@ -177,6 +177,33 @@ const cases = {
     await settled(page);
     assert.ok(Math.abs(await bone() - before) < 1e-5);
   },
+  async 'limbs follow or the surface stretches by the switch that the desk has'() {
+    await pose('move');
+    const { hand, bone } = await forearm(), before = await bone();
+    const pull = async () => {
+      const at = await jointSpot(hand);
+      await drag(at, { x: at.x - 15, y: at.y - 25 });
+      return bone();
+    };
+    const choose = async (state) => {
+      await page.locator(`#ar-follow [data-value=${state}]`).tap();
+      await settled(page);
+      for (const id of ['ar-follow', 'follow']) assert.equal(await page.locator(`#${id} [data-value=${state}]`).getAttribute('aria-pressed'), 'true', id);
+    };
+    assert.equal(await page.locator('#ar-follow').getByRole('button', { name: 'Follow', pressed: true }).count(), 1);
+    assert.ok(Math.abs(await pull() - before) < 1e-4, 'the arm does not keep its length');
+    await choose('alone');
+    assert.equal((await sessionState(page)).ik, false);
+    assert.deepEqual(await overlayBarriers(), []);
+    await shot('stretch');
+    assert.ok(Math.abs(await pull() - before) > 0.01, 'nothing stretches');
+    for (let step = 0; step < 2; ++step) {
+      await page.locator('#ar-undo').tap();
+      await settled(page);
+    }
+    assert.equal((await sessionState(page)).ik, true);
+    await choose('follow');
+  },
   async 'the number of handles is chosen'() {
     const { length } = (await sessionState(page)).joints;
     await page.locator('#ar #fewer-handles').tap();

@@ -199,6 +199,10 @@ const cases = {
     await settled(page);
     assert.equal((await sessionState(page)).dragged, null);
     await touch('touchEnd', []);
+    assert.ok(await page.evaluate(() => {
+      const { x, y, width, height } = document.querySelector('#ar-undo').getBoundingClientRect();
+      return document.elementFromPoint(x + width / 2, y + height / 2)?.closest('#ar-undo');
+    }), 'something lies over the arrow that undoes');
     const corner = new Vector3(0.04, 0, 0.04), [across, down] = spotOf(corner, cameraOf(resting), degreesHigh);
     const shown = await ar('spot', corner.toArray()), times = 844 / width; // the picture fills the screen
     assert.ok(Math.hypot(shown.x - 422 - times * (across - width / 2), shown.y - 195 - times * (down - height / 2)) < 2, JSON.stringify([shown, across, down]));

@@ -143,7 +143,7 @@ const cases = {
     assert.ok(apart(at, after) > 0.05, 'it has not moved');
     assert.ok(Math.abs(apart(after, await ask('handle', parent)) - bone) < 1e-3, 'the bone keeps its length');
   },
-  async 'scaled by the ray it grows'() {
+  async 'scaled by the ray it grows, and limbs follow or stretch by the switch that the desk has'() {
     await act(...ready);
     await pressCell('mode-scale');
     const hand = await jointOf('left hand'), { joints } = await sessionState(page), elbow = joints[joints.find((one) => one.name === hand).parent].name;
@@ -155,7 +155,15 @@ const cases = {
     await settled(page);
     assert.ok(await bone() > 1.1 * before, `${before} to ${await bone()} m`);
     await act(...ready);
-    await pressCell('ar-undo');
+    await pressCell('limb-alone');
+    assert.equal((await sessionState(page)).ik, false);
+    await act(...ready);
+    await shot('scaled');
+    for (let step = 0; step < 2; ++step) {
+      await pressCell('ar-undo');
+      await act(...ready);
+    }
+    assert.equal((await sessionState(page)).ik, true);
     assert.ok(Math.abs(await bone() - before) < 1e-4);
   },
   async 'a press on a handle selects it, and is no step'() {

@@ -48,7 +48,7 @@ const cases = {
     assert.equal(ik, true);
     assert.equal(targets.length, 2);
     assert.equal(undo, null);
-    assert.equal(await pressed(page, '#ik'), 'true');
+    assert.equal(await pressed(page, '#follow [data-value=follow]'), 'true');
   },
   async 'four drags: both hands up, the knees bent, the feet on the floor'() {
     const hands = [await jointOf('left hand'), await jointOf('right hand')], { joints, targets } = await sessionState(page);
@@ -101,9 +101,22 @@ const cases = {
   async 'a stool\'s limbs follow too, and stretch where that is turned off'() {
     const stool = await openStudio(browser, server.address, { search: '?sample=stool' });
     assert.equal((await sessionState(stool.page)).ik, true);
+    const followed = async () => {
+      await settled(stool.page);
+      const { ik } = await sessionState(stool.page);
+      for (const [state, on] of [['follow', ik], ['alone', !ik]]) assert.equal(await pressed(stool.page, `#follow [data-value=${state}]`), String(on), state);
+      return ik;
+    };
     await stool.page.keyboard.press('i');
-    await settled(stool.page);
-    assert.equal((await sessionState(stool.page)).ik, false);
+    assert.equal(await followed(), false);
+    await stool.page.getByRole('button', { name: 'Follow', exact: true }).click();
+    assert.equal(await followed(), true);
+    const { undo } = await sessionState(stool.page);
+    await stool.page.getByRole('button', { name: 'Follow', exact: true }).click();
+    assert.equal(await followed(), true);
+    assert.equal((await sessionState(stool.page)).undo, undo);
+    await stool.page.getByRole('button', { name: 'Stretch', exact: true }).click();
+    assert.equal(await followed(), false);
     assert.deepEqual(stool.errors, []);
     await stool.context.close();
   },

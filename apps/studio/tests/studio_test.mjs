@@ -79,7 +79,7 @@ const cases = {
     assert.match(await page.locator('#facts').textContent(), /vertices/);
   },
   async 'twenty handles'() {
-    await page.locator('#ik').click(); // each handle by itself
+    await page.locator('#follow [data-value=alone]').click(); // each handle by itself
     await setHandles(20);
     assert.ok([20, 21].includes((await jointNames()).length));
   },
@@ -128,10 +128,10 @@ const cases = {
     await setHandles(20);
   },
   async 'limbs follow with inverse kinematics'() {
-    await page.locator('#ik').click();
+    await page.locator('#follow [data-value=follow]').click();
     await settled(page);
     assert.equal((await sessionState(page)).ik, true);
-    assert.equal(await page.locator('#ik').getAttribute('aria-pressed'), 'true');
+    assert.equal(await page.locator('#follow [data-value=follow]').getAttribute('aria-pressed'), 'true');
     const name = await freeHandle(), { joints } = await sessionState(page);
     const parent = joints[joints.find((joint) => joint.name === name).parent].name;
     const bone = distance(await jointPosition(page, name), await jointPosition(page, parent));

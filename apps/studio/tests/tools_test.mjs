@@ -284,7 +284,7 @@ const cases = {
     await reset();
   },
   async 'arrows and rings stand as the chosen space does'() {
-    await page.locator('#ik').click();
+    await page.locator('#follow [data-value=alone]').click();
     await select(elbow);
     await type('#turn-y', 30);
     await type('#turn-z', 50);

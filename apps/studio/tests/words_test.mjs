@@ -259,7 +259,7 @@ const cases = {
     // Two fingers zoom.
     const fingers = { '+': 'main canvas', '-': 'main canvas', '[': '#brush-size', ']': '#brush-size' };
     const buttons = {
-      g: '.pose [data-value=move]', r: '.pose [data-value=turn]', S: '.pose [data-value=scale]', i: '#ik', s: '#both-sides', m: '#mirror', p: '#pin', h: '[data-value=surface]', f: '#whole-model', Home: '#whole-model',
+      g: '.pose [data-value=move]', r: '.pose [data-value=turn]', S: '.pose [data-value=scale]', i: '#follow [data-value=alone]', s: '#both-sides', m: '#mirror', p: '#pin', h: '[data-value=surface]', f: '#whole-model', Home: '#whole-model',
       Delete: '#reset-joint', 1: '#view-front', 3: '#view-right', 7: '#view-top', 5: '#view-flat', ' ': '#play', k: '#add-key', b: '#paint', l: '#lock-joint', x: '#gizmo', '?': '#export-as',
       n: '#magnet', v: '#select-several', c: '#copy-pose', z: '#undo', Z: '#redo', y: '#redo', o: '#open',
     };

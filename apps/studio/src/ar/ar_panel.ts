@@ -1,6 +1,7 @@
 // What is on the screen in augmented reality, beside the models: a line that helps, and what fingers need at hand.
 import type { DragMode } from '../app/state';
 import { addDialog } from '../panels/add_dialog';
+import { followSwitch } from '../panels/follow_switch';
 import { handleCount } from '../panels/pose_panel';
 import { status } from '../panels/status';
 import { button, choice, element, offer, setIcon } from '../ui/dom';
@@ -37,9 +38,10 @@ export function arPanel(desk: Desk): ArPanel {
   const members = element('select', { class: 'select', id: 'ar-members', 'aria-label': say('The model that is posed') });
   members.addEventListener('change', () => void studio.chooseMember(Number(members.value)));
   const mode = choice<DragMode>(say('What dragging a handle does'), dragModes(), (value) => page.set({ mode: value }));
+  const follow = followSwitch(studio, 'ar-follow');
   const handles = handleCount(studio, page);
   const adding = addDialog(studio);
-  const posing = element('div', { class: 'ar-posing' }, handles, mode.root);
+  const posing = element('div', { class: 'ar-posing' }, handles, element('div', { class: 'row' }, mode.root, follow.root));
   const tools = element('div', { class: 'row ar-tools' }, members, ...actions.tools.map((action) => make(action)), adding.button, picture);
   const root = element('main', { class: 'ar', id: 'ar' },
     element('div', { class: 'ar-surface', role: 'application', 'aria-label': say('The models in the real place. Buttons do what can be done without pointing.') }),
@@ -59,6 +61,7 @@ export function arPanel(desk: Desk): ArPanel {
     tools.hidden = isPlacing(now);
     posing.hidden = !isPosing(now);
     mode.show(now.mode);
+    follow.show(now.session);
     const names = now.session?.members.map(({ name }) => name) ?? [];
     members.hidden = names.length < 2;
     if (names.join('\n') !== listed) {

@@ -24,7 +24,7 @@ const lines: Line[] = [
   { does: 'add it to the scene', mouse: 'Drop a file with Shift' },
   { does: 'let go without a change', keys: 'Escape', touch: 'Undo, afterwards' },
   { does: 'move / turn / scale', keys: 'G / R / Shift+S', touch: 'Move, Turn, Scale' },
-  { does: 'limbs follow', keys: 'I', touch: 'Limbs follow' },
+  { does: 'limbs follow, or the surface stretches', keys: 'I', touch: 'Follow, Stretch' },
   { does: 'both sides at once', keys: 'S', touch: 'Both sides' },
   { does: 'select another joint besides', mouse: 'Shift and click' },
   { does: 'draw a box round joints to select', mouse: 'Shift and drag beside' },

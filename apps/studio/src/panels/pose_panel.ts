@@ -10,6 +10,7 @@ import { arriving } from '../ui/loaded_when_opened';
 import { partName } from '../words/parts';
 import { say } from '../words/say';
 import { exactFields } from './exact_fields';
+import { followSwitch } from './follow_switch';
 
 const mostHandles = 200;
 
@@ -19,9 +20,7 @@ export function posePanel(studio: Studio, page: PageStore, poses: PoseShelf, vie
     { value: 'turn', text: say('Turn'), icon: 'turn', keys: 'R' },
     { value: 'scale', text: say('Scale'), icon: 'scale', keys: 'Shift+S' },
   ], (value) => page.set({ mode: value }));
-  const ik = button(say('Limbs follow'), () => void studio.toggleIk(), {
-    keys: 'I', label: say('Limbs follow: inverse kinematics, a handle takes its limb along'), id: 'ik',
-  });
+  const follow = followSwitch(studio, 'follow');
   const both = button(say('Both sides'), () => page.set({ bothSides: !page.now.bothSides }), {
     keys: 'S', label: say('What is dragged on one side is done on the other as well'), id: 'both-sides',
   });
@@ -49,16 +48,17 @@ export function posePanel(studio: Studio, page: PageStore, poses: PoseShelf, vie
   page.watch(({ session, mode: nowMode, display: nowDisplay, bothSides, copiedPose }) => {
     mode.show(nowMode);
     display.show(nowDisplay);
-    ik.setAttribute('aria-pressed', String(session?.ik ?? false));
+    follow.show(session);
     both.setAttribute('aria-pressed', String(bothSides));
-    ik.disabled = both.disabled = mirror.disabled = !session;
+    both.disabled = mirror.disabled = !session;
     copy.disabled = library.disabled = !session;
     paste.disabled = !session || copiedPose === null;
     reset.disabled = rest.disabled = !session?.posed;
   });
   return element('section', { class: 'card pose', 'aria-label': say('Posing') },
     handleCount(studio, page),
-    element('div', { class: 'row' }, mode.root, ik),
+    element('div', { class: 'row' }, mode.root),
+    element('div', { class: 'row' }, follow.root),
     element('div', { class: 'row' }, both, mirror),
     element('div', { class: 'row' }, reset, rest),
     element('div', { class: 'row' }, copy, paste, library),

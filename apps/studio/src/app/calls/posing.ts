@@ -17,6 +17,12 @@ export function posingCalls(core: Core) {
     if (bothSides && page.now.session === session) page.set({ bothSides: false });
   }
 
+  /** Whether a dragged handle takes its limb along, or stretches the surface alone. */
+  async function setIk(on: boolean) {
+    const { session } = page.now;
+    if (session && session.ik !== on) await core.run({ do: 'set_ik', on, solver: session.solver });
+  }
+
   return {
     async undo() { await core.run({ do: 'undo' }); },
     async redo() { await core.run({ do: 'redo' }); },
@@ -24,10 +30,8 @@ export function posingCalls(core: Core) {
     async mirrorPose() { await core.run({ do: 'mirror_pose', from: 'both' }); },
     async setRestPose() { await core.run({ do: 'set_rest_pose' }); },
 
-    async toggleIk() {
-      const { session } = page.now;
-      if (session) await core.run({ do: 'set_ik', on: !session.ik, solver: session.solver });
-    },
+    setIk,
+    async toggleIk() { await setIk(!page.now.session?.ik); },
     async chooseSolver(solver: string) { await core.run({ do: 'set_ik', on: page.now.session?.ik ?? false, solver }); },
 
     /** With all that are selected, as the ones below. */

@@ -1,6 +1,7 @@
 // What the panel in space says and offers: the phone's actions, and what the page tells beside them.
 import { samples } from '../../app/samples';
 import type { PageState } from '../../app/state';
+import { limbState, limbStates } from '../../panels/follow_switch';
 import { mostHandlesOf } from '../../panels/pose_panel';
 import { counted } from '../../ui/counted';
 import { offer, type IconName } from '../../ui/dom';
@@ -88,9 +89,11 @@ export class PanelContents {
     });
     const count = this.cell('handles', counted(studio.handleCount(), 'handle'), () => {}, { enabled: false });
     const modes = dragModes().map(({ value, text, icon }) => this.cell(`mode-${value}`, text, () => page.set({ mode: value }), { icon, pressed: now.mode === value }));
+    const limbs = limbStates().map(({ value, text }) =>
+      this.cell(`limb-${value}`, text, () => void studio.setIk(value === 'follow'), { pressed: limbState(now.session) === value }));
     return [
       [place, ...tools].filter((action) => action.shown(now)).map((action) => this.cellOf(action, now, action === place)).concat(isPlacing(now) ? [] : [add]),
-      ...(isPosing(now) ? [[step('\u2212', 'fewer-handles', -1), count, step('+', 'more-handles', 1)], modes] : []),
+      ...(isPosing(now) ? [[step('\u2212', 'fewer-handles', -1), count, step('+', 'more-handles', 1)], modes, limbs] : []),
       [...history.map((action) => this.cellOf(action, now)), ...(isPlacing(now) ? [] : [others, picture]), this.cellOf(leave, now)],
     ];
   }

@@ -4,7 +4,7 @@ import { element, iconPath } from '../../ui/dom';
 import type { Cell, PanelContent } from './panel_content';
 
 /** Millimetres, as everything here. */
-export const panelSize = { width: 300, height: 240 };
+export const panelSize = { width: 300, height: 280 };
 const density = 3.4; // pixels to a millimetre: at 0.6 m 36 a degree, where headsets show about 25
 /** At 0.6 m an em of 13 is 1.24 degrees, of which capitals are 0.9, and a button of 34 is 3.2 degrees high. */
 const text = 13, smallText = 10.5, lineHeight = 1.28, button = 34, gap = 6, edge = 12, corner = 7, iconSize = 16;

@@ -8,7 +8,7 @@ import { panelSize, PanelPicture } from './panel_picture';
 
 const { width, height } = { width: panelSize.width / 1000, height: panelSize.height / 1000 }; // metres
 
-const aboveHand = 0.17, beforeHand = 0.06; // metres to its middle: up, and away from the user
+const aboveHand = 0.19, beforeHand = 0.06; // metres to its middle: up, and away from the user
 const besideModel = 0.25, armLength = 0.6, belowEyes = 0.2; // metres
 const follows = 0.1, arrived = 0.01; // metres from where it should be: begins to go there, is there
 const delay = 0.18; // seconds in which two thirds of the distance are gone
