@@ -8,7 +8,6 @@
 #include <algorithm>
 
 #include "limber/core/parallel.h"
-#include "limber/rigging/sphere_mesh/edge_heap.h"
 #include "limber/rigging/sphere_mesh/limb_ends.h"
 #include "limber/rigging/sphere_mesh/monotone_queue.h"
 
@@ -27,6 +26,12 @@ Sphere boundedMinimum(const SphereQuadric& quadric, const PartMoments& moments) 
   const Sphere sphere = quadric.minimum();
   const double bound = moments.radiusBound();
   return sphere.radius <= bound ? sphere : quadric.minimumOfRadius(bound);
+}
+
+// The error of planes alone, without the pull.
+float planeError(const SphereQuadric& quadric, const PartMoments& moments, const Sphere& sphere) {
+  const double pull = SphereQuadric::kCentering * moments.squaredDistances(sphere.center);
+  return static_cast<float>(std::max(0.0, quadric.error(sphere) - pull));
 }
 
 class Collapser {
@@ -56,7 +61,7 @@ class Collapser {
     double cost = 0;
   };
   JointEnd jointEnd(Index e) const;
-  void loseEnds(const Merge& m, Index end);
+  void loseEnds(const Merge& m, Index end, Index countBefore);
   void fetchClusters(Index e) const;
   // Whether merging e takes one sphere away, not two.
   bool takesOne(Index e) const {
@@ -66,9 +71,10 @@ class Collapser {
 
   void merge(Index e);
   Index keptOf(Index e) const;
-  Index findBridge(Index next);
-  Bridge bridgeWithoutEdge(Index next) const;
-  Index record(const Bridge& bridge);
+  Index betweenBefore(const Merge& next);
+  Index betweenAfter();
+  Index cheapestOnPlane();
+  Index record(CountBetween between, const SphereQuadric& quadric, const PartMoments& moments);
 
   Progress& progress_;
   CollapseSequence sequence_;
@@ -77,7 +83,6 @@ class Collapser {
   CollapseGraph graph_;  // an edge's note: merges done when its key was last computed
   bool symmetric_ = false;
   MonotoneQueue queue_;
-  EdgeHeap bridgeHeap_;        // the edges that take one sphere away; only filled with symmetry
   std::vector<Index> madeBy_;  // per node: the last merge that kept it
   Index count_ = 0;            // spheres left
   std::vector<Index> endOf_;   // per node: the end of a limb that it is of, or kNoIndex; empty until they are known
@@ -88,8 +93,13 @@ class Collapser {
   };
   std::vector<End> ends_;
   double costOfEnds_ = 0, area_ = 0;  // as in CollapseInput
-  Index lastBridgeEdge_ = kNoIndex;   // that the last of sequence_.bridges was made for, and when
-  Index lastBridgeTime_ = 0;
+  struct OnPlane {
+    Index merge = kNoIndex;
+    SphereQuadric quadric;  // of what was gone
+    PartMoments moments;
+  };
+  OnPlane lastOnPlane_;          // the last merge of two nodes on the plane
+  std::vector<Index> fewEdges_;  // all that are alive, and some that are not, from when the ends are known
 };
 
 Collapser::Collapser(const CollapseInput& input, Progress& progress)
@@ -116,11 +126,6 @@ Collapser::Collapser(const CollapseInput& input, Progress& progress)
     for (std::size_t e = begin; e < end; ++e) keys[e] = evaluate(static_cast<Index>(e));
   });
   queue_.fill(keys);
-  bridgeHeap_.reset(static_cast<Index>(symmetric_ ? keys.size() : 0));
-  if (!symmetric_) return;
-  for (Index e = 0; e < keys.size(); ++e) {
-    if (takesOne(e)) bridgeHeap_.insert(e, keys[e]);
-  }
 }
 
 // What holds for the sphere that kept becomes: on the plane, or the one of a pair on kept's side.
@@ -150,7 +155,6 @@ void Collapser::refresh(Index e) {
   const float key = evaluate(e) + static_cast<float>(jointEnd(e).cost);
   graph_.setNote(e, static_cast<Index>(sequence_.merges.size()));
   queue_.raise(e, key);
-  if (symmetric_ && bridgeHeap_.contains(e)) bridgeHeap_.update(e, queue_.key(e));
 }
 
 // The longer a limb, the more is lost with its end. Keys only grow, as the queue asks: what is lost stays lost.
@@ -167,6 +171,7 @@ void Collapser::findEnds() {
   }
   for (Index e = 0; e < sequence_.edges.size(); ++e) {
     if (!graph_.alive(e)) continue;
+    fewEdges_.push_back(e);
     const GraphEdge& edge = graph_.edge(e);
     graph.edges.push_back({numbers[edge.from], makeEnd(numbers[nodeOf(edge.to)], crossesOf(edge.to))});
   }
@@ -199,13 +204,12 @@ Collapser::JointEnd Collapser::jointEnd(Index e) const {
 }
 
 // `end` is what the joint of a merge is of.
-void Collapser::loseEnds(const Merge& m, Index end) {
+void Collapser::loseEnds(const Merge& m, Index end, Index countBefore) {
   for (const Index node : {m.kept, m.gone}) {
     const Index lost = endOf_[node];
     endOf_[node] = kNoIndex;
     if (lost == kNoIndex || lost == end) continue;
     if (std::find(endOf_.begin(), endOf_.end(), lost) != endOf_.end()) continue;  // others have it still
-    const Index countBefore = m.countAfter + (m.bridge == kNoIndex ? 1 : 2);
     sequence_.lostEnds.push_back({countBefore, static_cast<float>(ends_[lost].length)});
   }
   endOf_[m.kept] = end;
@@ -254,19 +258,22 @@ void Collapser::merge(Index e) {
   m.kept = keptOf(e);
   m.gone = m.kept == ends.from ? nodeOf(ends.to) : ends.from;
   m.crosses = crossesOf(ends.to);
-  m.bridge = kNoIndex;
-  if (!takesOne(e)) {
-    m.bridge = findBridge(e);
-    --count_;
+  m.between = kNoIndex;
+  m.error = queue_.key(e);
+  const bool one = takesOne(e);
+  const bool onPlane = one && symmetric_ && m.kept != m.gone && graph_.single(m.kept);
+  if (onPlane) {
+    lastOnPlane_ = {time, clusters_[m.gone].quadric, moments_[m.gone]};
+  } else if (!one) {
+    m.between = betweenBefore(m);
   }
-  --count_;
+  const Index countBefore = count_;
+  count_ -= one ? 1 : 2;
   m.countAfter = count_;
   m.keptBefore = madeBy_[m.kept];
   m.goneBefore = madeBy_[m.gone];
   m.deadBegin = static_cast<Index>(sequence_.deadEdges.size());
-  m.error = queue_.key(e);
-
-  if (!ends_.empty()) loseEnds(m, jointEnd(e).end);
+  if (!ends_.empty()) loseEnds(m, jointEnd(e).end, countBefore);
   SphereQuadric& quadric = clusters_[m.kept].quadric;
   PartMoments& moments = moments_[m.kept];
   quadric = jointQuadric(m.kept, m.gone, m.crosses);
@@ -274,23 +281,14 @@ void Collapser::merge(Index e) {
   const Sphere sphere = boundedMinimum(quadric, moments);
   m.center = sphere.center.cast<float>();
   m.radius = static_cast<float>(sphere.radius);
-  const double pull = SphereQuadric::kCentering * moments.squaredDistances(sphere.center);
-  m.planeError = static_cast<float>(std::max(0.0, quadric.error(sphere) - pull));
+  m.planeError = planeError(quadric, moments, sphere);
   m.weight = static_cast<float>(quadric.weight());
 
   graph_.merge(e, m.kept, queue_);
   m.single = graph_.single(m.kept);
   for (const DeadEdge& dead : graph_.dead()) {
     queue_.remove(dead.edge);
-    if (symmetric_ && bridgeHeap_.contains(dead.edge)) bridgeHeap_.remove(dead.edge);
     sequence_.deadEdges.push_back(dead);
-  }
-  if (symmetric_) {
-    for (const Index touched : graph_.touched()) {
-      if (graph_.alive(touched) && takesOne(touched) && !bridgeHeap_.contains(touched)) {
-        bridgeHeap_.insert(touched, queue_.key(touched));
-      }
-    }
   }
   clusters_[m.kept].changed = time + 1;
   madeBy_[m.kept] = time;
@@ -299,47 +297,61 @@ void Collapser::merge(Index e) {
     sequence_.absorbedBy[m.gone] = time;
   }
   sequence_.merges.push_back(m);
+  if (!one && m.between == kNoIndex) sequence_.merges.back().between = betweenAfter();
 }
 
-// The cheapest step by one sphere, where `next` takes two: its index in sequence_.bridges.
-Index Collapser::findBridge(Index next) {
-  while (!bridgeHeap_.empty() && stale(bridgeHeap_.top())) refresh(bridgeHeap_.top());
-  if (bridgeHeap_.empty()) return record(bridgeWithoutEdge(next));
-  const Index e = bridgeHeap_.top();
-  if (e != lastBridgeEdge_ || graph_.edge(e).note != lastBridgeTime_) {
-    const GraphEdge& g = graph_.edge(e);
-    lastBridgeEdge_ = e;
-    lastBridgeTime_ = graph_.edge(e).note;
-    record({g.from, nodeOf(g.to), Vec3f::Zero(), 0, 0});
+// What is done for the count between before a merge; kNoIndex if that is better done after it.
+Index Collapser::betweenBefore(const Merge& next) {
+  const Index e = cheapestOnPlane();
+  if (e != kNoIndex) {
+    const Index node = graph_.edge(e).from, gone = nodeOf(graph_.edge(e).to);
+    return record({node, gone}, jointQuadric(node, gone, false), jointMoments(node, gone, false));
   }
-  return static_cast<Index>(sequence_.bridges.size() - 1);
+  if (lastOnPlane_.merge != kNoIndex) return kNoIndex;
+  const Index pair = graph_.single(next.gone) ? next.kept : next.gone;
+  return record({pair}, clusters_[pair].quadric.withMirrorImage(), moments_[pair].withMirrorImage());
 }
 
-// No edge takes one sphere away: a pair that is next to a single node merges across the plane, one that is cheap to
-// merge with that node if there is one.
-Bridge Collapser::bridgeWithoutEdge(Index next) const {
-  constexpr Index kTried = 64;
-  const auto pairBesideSingle = [&](Index e) {
-    const Index a = graph_.edge(e).from, b = nodeOf(graph_.edge(e).to);
-    return graph_.single(a) == graph_.single(b) ? kNoIndex : graph_.single(a) ? b : a;
+// The edge between two single nodes with the least key, once there are few nodes; kNoIndex if there is none.
+Index Collapser::cheapestOnPlane() {
+  const auto onPlane = [&](Index e) {
+    return graph_.single(graph_.edge(e).from) && graph_.single(nodeOf(graph_.edge(e).to));
   };
-  Index pair = pairBesideSingle(next);
-  if (pair == kNoIndex) {
-    for (const Index e : queue_.someOfTheLowest(kTried)) {
-      pair = pairBesideSingle(e);
-      if (pair != kNoIndex) break;
-    }
+  std::erase_if(fewEdges_, [&](Index e) { return !graph_.alive(e); });
+  Index cheapest = kNoIndex;
+  for (const Index e : fewEdges_) {
+    if (!onPlane(e) || (cheapest != kNoIndex && queue_.key(e) >= queue_.key(cheapest))) continue;
+    if (stale(e)) refresh(e);
+    if (cheapest == kNoIndex || queue_.key(e) < queue_.key(cheapest)) cheapest = e;
   }
-  if (pair == kNoIndex) pair = graph_.edge(next).from;
-  return {pair, pair, Vec3f::Zero(), 0, 0};
+  return cheapest;
 }
 
-Index Collapser::record(const Bridge& bridge) {
-  const SphereQuadric quadric = jointQuadric(bridge.a, bridge.b, bridge.a == bridge.b);
-  const Sphere sphere = boundedMinimum(quadric, jointMoments(bridge.a, bridge.b, bridge.a == bridge.b));
-  sequence_.bridges.push_back({bridge.a, bridge.b, sphere.center.cast<float>(), static_cast<float>(sphere.radius),
-                               static_cast<float>(quadric.weight())});
-  return static_cast<Index>(sequence_.bridges.size() - 1);
+// What is done for it after the merge.
+Index Collapser::betweenAfter() {
+  Index node = sequence_.merges[lastOnPlane_.merge].kept;
+  while (sequence_.absorbedBy[node] != kNoIndex) node = sequence_.merges[sequence_.absorbedBy[node]].kept;
+  SphereQuadric quadric = clusters_[node].quadric;
+  PartMoments moments = moments_[node];
+  quadric -= lastOnPlane_.quadric;
+  moments -= lastOnPlane_.moments;
+  return record({node, kNoIndex, lastOnPlane_.merge}, quadric, moments);
+}
+
+// With the sphere of what `node` represents there.
+Index Collapser::record(CountBetween between, const SphereQuadric& quadric, const PartMoments& moments) {
+  const Sphere sphere = boundedMinimum(quadric, moments);
+  between.center = sphere.center.cast<float>();
+  between.radius = static_cast<float>(sphere.radius);
+  between.weight = static_cast<float>(quadric.weight());
+  between.planeErrorChange = planeError(quadric, moments, sphere);
+  for (const Index node : {between.node, between.gone}) {
+    if (node == kNoIndex || madeBy_[node] == kNoIndex) continue;
+    const Merge& m = sequence_.merges[madeBy_[node]];
+    between.planeErrorChange -= m.planeError * (m.single ? 1.0f : 2.0f);
+  }
+  sequence_.between.push_back(between);
+  return static_cast<Index>(sequence_.between.size() - 1);
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ struct Merge {
   Index goneBefore = 0;          // likewise
   Index countAfter = 0;          // spheres that are left, images counted
   Index deadBegin = 0;           // edges that went with this merge: deadEdges from here
-  Index bridge = 0;              // of `bridges`: the count between, where two spheres go at once; else kNoIndex
+  Index between = 0;             // of `between`: the count between, where two spheres go at once; else kNoIndex
   float error = 0;               // least error of the result's quadric: what the merge costs
   float planeError = 0;          // of the sphere below: squared distance to planes alone
   Vec3f center = Vec3f::Zero();  // of the result, on the side of kept
@@ -41,12 +41,18 @@ struct Merge {
   float weight = 0;  // of the result's surface, of one sphere if it is a pair; all of the surface weighs 1
 };
 
-// A step by one sphere that keeps symmetry, taken instead of a merge when the count asked for falls inside that merge.
-struct Bridge {
-  Index a = 0, b = 0;  // two single nodes; or a pair, twice: it merges with its own image
-  Vec3f center = Vec3f::Zero();
+// The count between, where a merge takes two spheres at once, is one of these:
+// - before the merge: two nodes on the plane are one, `node` and `gone`
+// - after it: an earlier merge of two nodes on the plane is `undone`; what went in it is a sphere of its own
+// - before it, where there is neither: a pair, `node`, is one sphere
+struct CountBetween {
+  Index node = 0;                // whose sphere is another than before the merge, or after it
+  Index gone = kNoIndex;         // likewise, of the first kind
+  Index undone = kNoIndex;       // a merge, of the second kind
+  Vec3f center = Vec3f::Zero();  // of `node`, on the plane
   float radius = 0;
   float weight = 0;
+  float planeErrorChange = 0;  // by the spheres of `node` and `gone`
 };
 
 // The end of a limb (limbEnds) that no sphere has for itself from a merge on.
@@ -62,7 +68,7 @@ struct CollapseSequence {
   std::vector<Merge> merges;
   std::vector<DeadEdge> deadEdges;  // every edge, in the order in which they went
   std::vector<Index> absorbedBy;    // per node: the merge in which it was `gone`, kNoIndex for the last one
-  std::vector<Bridge> bridges;
+  std::vector<CountBetween> between;
   std::vector<LostEnd> lostEnds;  // in the order in which they were lost
 };
 

@@ -27,17 +27,6 @@ void MonotoneQueue::dealOut(int bucket) {
   announced_ = 0;
 }
 
-std::vector<Index> MonotoneQueue::someOfTheLowest(std::size_t most) const {
-  std::vector<Index> edges;
-  for (const std::vector<std::uint64_t>& bucket : buckets_) {
-    for (const std::uint64_t entry : bucket) {
-      if (edges.size() == most) return edges;
-      edges.push_back(static_cast<Index>(entry));
-    }
-  }
-  return edges;
-}
-
 void MonotoneQueue::raise(Index edge, float key) {
   Slot& slot = slots_[edge];
   if (!(key > slot.key)) return;

@@ -33,8 +33,6 @@ class MonotoneQueue {
   }
   // The edge that comes after top() if nothing changes; kNoIndex if that is not known.
   Index next() const { return next_; }
-  // Up to `most` edges, from the lowest bucket up, in no order within one.
-  std::vector<Index> someOfTheLowest(std::size_t most) const;
   bool contains(Index edge) const { return slots_[edge].position != kNoIndex; }
   float key(Index edge) const { return slots_[edge].key; }
 

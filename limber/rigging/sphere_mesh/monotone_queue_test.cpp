@@ -73,17 +73,6 @@ TEST(MonotoneQueue, AgreesWithASortedSetThroughRandomChanges) {
   }
 }
 
-TEST(MonotoneQueue, ListsSomeOfTheLowest) {
-  std::vector<float> keys(100, 1e6f);
-  for (Index e = 40; e < 50; ++e) keys[e] = 1e-6f * static_cast<float>(e);
-  MonotoneQueue queue;
-  queue.fill(keys);
-  const std::vector<Index> some = queue.someOfTheLowest(10);
-  EXPECT_EQ(std::set<Index>(some.begin(), some.end()).size(), 10u);
-  for (const Index e : some) EXPECT_EQ(e / 10, 4u);
-  EXPECT_EQ(queue.someOfTheLowest(1000).size(), 100u);
-}
-
 }  // namespace
 
 }  // namespace limber

@@ -18,6 +18,12 @@ struct PartMoments {
     for (int i = 0; i < 6; ++i) second[i] += other.second[i];
     return *this;
   }
+  PartMoments& operator-=(const PartMoments& part) {
+    weight -= part.weight;
+    for (int i = 0; i < 3; ++i) first[i] -= part.first[i];
+    for (int i = 0; i < 6; ++i) second[i] -= part.second[i];
+    return *this;
+  }
 
   // As in SphereQuadric.
   void clearOdd();

@@ -19,20 +19,25 @@ struct SphereMesh::BorderedEdge {
 
 // The collapse stopped at a count.
 struct SphereMesh::Cut {
-  Index merges = 0;                // so many of them are done
-  const Bridge* bridge = nullptr;  // and then this step
-  Index loose = 0;                 // so many loose vertices are merged
+  Index merges = 0;                       // so many of them are done
+  const CountBetween* between = nullptr;  // but for what this says
+  Index loose = 0;                        // so many loose vertices are merged
 
-  // Living nodes by index, the merge that made each (or kNoIndex), and its first handle; a pair has two.
+  bool done(Index merge) const { return merge < merges && (!between || merge != between->undone); }
+
+  // Living nodes by index, each with its sphere and its first handle; a pair has two.
   struct Node {
     Index node = 0;
-    Index madeBy = 0;
-    Index handle = 0;
     bool single = false;
+    Vec3f center = Vec3f::Zero();
+    float radius = 0;
+    float weight = 0;
+    Index handle = 0;
   };
   std::vector<Node> nodes;
 
   const Node& find(Index node) const {
+    if (between && node == between->gone) node = between->node;
     return *std::lower_bound(nodes.begin(), nodes.end(), node,
                              [](const Node& a, Index sought) { return a.node < sought; });
   }
@@ -80,7 +85,10 @@ SphereMesh::Cut SphereMesh::cutAt(Index count) const {
     const auto last =
         std::partition_point(merges.begin(), merges.end(), [count](const Merge& m) { return m.countAfter > count; });
     cut.merges = static_cast<Index>(last - merges.begin()) + (last->countAfter == count ? 1 : 0);
-    if (last->countAfter < count) cut.bridge = &sequence_.bridges[last->bridge];
+    if (last->countAfter < count) {
+      cut.between = &sequence_.between[last->between];
+      if (cut.between->undone != kNoIndex) ++cut.merges;
+    }
   }
   listNodes(cut);
   return cut;
@@ -90,9 +98,12 @@ SphereMesh::Cut SphereMesh::cutAt(Index count) const {
 void SphereMesh::listNodes(Cut& cut) const {
   const auto& merges = sequence_.merges;
   const auto add = [&](Index node, Index madeBy) {
-    if (madeBy != kNoIndex && madeBy >= cut.merges) return;
-    const bool single = madeBy == kNoIndex ? sequence_.single[node] != 0 : merges[madeBy].single;
-    cut.nodes.push_back({node, madeBy, 0, single});
+    if (madeBy == kNoIndex) {
+      cut.nodes.push_back({node, sequence_.single[node] != 0, nodeCenters_[node], 0, nodeWeights_[node]});
+    } else if (madeBy < cut.merges) {
+      const Merge& m = merges[madeBy];
+      cut.nodes.push_back({node, m.single, m.center, m.radius, m.weight});
+    }
   };
   if (merges.empty()) {
     add(0, kNoIndex);
@@ -104,9 +115,17 @@ void SphereMesh::listNodes(Cut& cut) const {
     add(m.kept, m.keptBefore);
     if (m.gone != m.kept) add(m.gone, m.goneBefore);
   }
+  if (cut.between && cut.between->undone != kNoIndex) {
+    const Merge& undone = merges[cut.between->undone];
+    add(undone.gone, undone.goneBefore);
+  }
+  std::erase_if(cut.nodes, [&](const Cut::Node& node) { return cut.between && node.node == cut.between->gone; });
   std::sort(cut.nodes.begin(), cut.nodes.end(), [](const auto& a, const auto& b) { return a.node < b.node; });
   Index handle = 0;
   for (Cut::Node& node : cut.nodes) {
+    if (const CountBetween* b = cut.between; b && b->node == node.node) {
+      node = {node.node, true, b->center, b->radius, b->weight};
+    }
     node.handle = handle;
     handle += node.single ? 1 : 2;
   }
@@ -116,16 +135,13 @@ SphereMeshLevel SphereMesh::level(Index count) const {
   const Cut cut = cutAt(count);
   SphereMeshLevel level;
   for (const Cut::Node& node : cut.nodes) {
-    const Merge* const m = node.madeBy == kNoIndex ? nullptr : &sequence_.merges[node.madeBy];
-    const Vec3f& center = m ? m->center : nodeCenters_[node.node];
     for (int side = 0; side < (node.single ? 1 : 2); ++side) {
-      level.spheres.push_back(toMesh(center, m ? m->radius : 0, side == 1));
-      level.weights.push_back(m ? m->weight : nodeWeights_[node.node]);
+      level.spheres.push_back(toMesh(node.center, node.radius, side == 1));
+      level.weights.push_back(node.weight);
       if (mirror_) level.images.push_back(node.handle + (node.single ? 0 : 1 - side));
     }
   }
   std::vector<BorderedEdge> edges = edgesOf(cut);
-  if (cut.bridge) applyBridge(cut, level, edges);
   if (cut.loose < loose_.size()) appendLoose(cut, level, edges);
   std::sort(edges.begin(), edges.end(), [](const auto& a, const auto& b) { return a.ends < b.ends; });
   for (const BorderedEdge& edge : edges) {
@@ -138,12 +154,13 @@ SphereMeshLevel SphereMesh::level(Index count) const {
   return level;
 }
 
-// All edges that went after the cut were alive at it; what has joined them since is not yet of their borders.
+// All edges that went after the cut, or after the merge that it leaves undone, were alive then; what has joined them
+// since is not yet of their borders.
 std::vector<SphereMesh::BorderedEdge> SphereMesh::edgesOf(const Cut& cut) const {
   std::vector<BorderedEdge> edges;
-  if (cut.merges == sequence_.merges.size()) return edges;
-  const std::span<const DeadEdge> alive =
-      std::span(sequence_.deadEdges).subspan(sequence_.merges[cut.merges].deadBegin);
+  const Index since = cut.between ? std::min(cut.between->undone, cut.merges) : cut.merges;
+  if (since == sequence_.merges.size()) return edges;
+  const std::span<const DeadEdge> alive = std::span(sequence_.deadEdges).subspan(sequence_.merges[since].deadBegin);
   std::unordered_map<Index, Border> joinedSince;
   for (const DeadEdge& edge : alive) {
     if (edge.joined != kNoIndex && edge.border > 0) joinedSince[edge.joined] += edge.border;
@@ -155,41 +172,22 @@ std::vector<SphereMesh::BorderedEdge> SphereMesh::edgesOf(const Cut& cut) const 
     const GraphEdge& e = sequence_.edges[edge.edge];
     const auto joined = joinedSince.find(edge.edge);
     const Border border = edge.border - (joined == joinedSince.end() ? 0 : joined->second);
-    const EdgeEnd from = climb(makeEnd(e.from, false), cut.merges), to = climb(e.to, cut.merges);
+    const EdgeEnd from = climb(makeEnd(e.from, false), cut), to = climb(e.to, cut);
     add(cut.handleOf(from), cut.handleOf(to), border);
     add(cut.handleOf(from ^ 1), cut.handleOf(to ^ 1), border);
   }
   return edges;
 }
 
-// The node that represents `end` after so many merges, crossing where the path there leads to its image.
-EdgeEnd SphereMesh::climb(EdgeEnd end, Index mergeCount) const {
+// The node that represents `end`, crossing where the path there leads to its image.
+EdgeEnd SphereMesh::climb(EdgeEnd end, const Cut& cut) const {
   Index node = nodeOf(end);
   bool crosses = crossesOf(end);
-  for (Index by = sequence_.absorbedBy[node]; by < mergeCount; by = sequence_.absorbedBy[node]) {
+  for (Index by = sequence_.absorbedBy[node]; cut.done(by); by = sequence_.absorbedBy[node]) {
     crosses = crosses != sequence_.merges[by].crosses;
     node = sequence_.merges[by].kept;
   }
   return makeEnd(node, crosses);
-}
-
-// Makes one handle of two: those of two single nodes, or the two of a pair. The last handle takes the freed slot.
-void SphereMesh::applyBridge(const Cut& cut, SphereMeshLevel& level, std::vector<BorderedEdge>& edges) const {
-  const Bridge& bridge = *cut.bridge;
-  const Index first = cut.find(bridge.a).handle;
-  const Index second = bridge.a == bridge.b ? first + 1 : cut.find(bridge.b).handle;
-  const Index kept = std::min(first, second), gone = std::max(first, second);
-  const auto renamed = [&](Index handle) { return handle == gone ? kept : handle > gone ? handle - 1 : handle; };
-  level.spheres[kept] = toMesh(bridge.center, bridge.radius, false);
-  level.weights[kept] = bridge.weight;
-  level.images[kept] = kept;
-  level.spheres.erase(level.spheres.begin() + gone);
-  level.weights.erase(level.weights.begin() + gone);
-  level.images.erase(level.images.begin() + gone);
-  for (Index& image : level.images) image = renamed(image);  // no loose ones are left at a bridge
-  for (BorderedEdge& edge : edges) edge.ends = {renamed(edge.ends[0]), renamed(edge.ends[1])};
-  std::erase_if(edges, [](const BorderedEdge& edge) { return edge.ends[0] == edge.ends[1]; });
-  for (BorderedEdge& edge : edges) std::sort(edge.ends.begin(), edge.ends.end());
 }
 
 void SphereMesh::appendLoose(const Cut& cut, SphereMeshLevel& level, std::vector<BorderedEdge>& edges) const {
@@ -207,25 +205,17 @@ std::vector<Index> SphereMesh::vertexHandles(Index count) const {
   // From the last merge back, the node that went is where the one that stayed is by then.
   std::vector<EdgeEnd> ends(nodeCenters_.size());
   for (Index node = 0; node < ends.size(); ++node) ends[node] = makeEnd(node, false);
-  for (std::size_t i = cut.merges; i > 0; --i) {
-    const Merge& m = sequence_.merges[i - 1];
-    if (m.gone != m.kept) ends[m.gone] = ends[m.kept] ^ static_cast<EdgeEnd>(m.crosses);
-  }
-  Index first = kNoIndex, second = kNoIndex;
-  if (cut.bridge) {
-    first = cut.find(cut.bridge->a).handle;
-    second = cut.bridge->a == cut.bridge->b ? first + 1 : cut.find(cut.bridge->b).handle;
-    if (first > second) std::swap(first, second);
-  }
+  const auto follow = [&](Index merge) {
+    const Merge& m = sequence_.merges[merge];
+    if (m.gone != m.kept && cut.done(merge)) ends[m.gone] = ends[m.kept] ^ static_cast<EdgeEnd>(m.crosses);
+  };
+  for (Index merge = cut.merges; merge > 0; --merge) follow(merge - 1);
   std::vector<Index> nodeHandles(2 * ends.size(), kNoIndex);  // per living end
-  for (const Cut::Node& node : cut.nodes) {
-    for (const bool image : {false, true}) {
-      const Index handle = cut.handleOf(makeEnd(node.node, image));
-      nodeHandles[makeEnd(node.node, image)] = !cut.bridge || handle < second ? handle
-                                               : handle == second             ? first
-                                                                              : handle - 1;
-    }
-  }
+  const auto number = [&](Index node) {
+    for (const EdgeEnd end : {makeEnd(node, false), makeEnd(node, true)}) nodeHandles[end] = cut.handleOf(end);
+  };
+  for (const Cut::Node& node : cut.nodes) number(node.node);
+  if (cut.between && cut.between->gone != kNoIndex) number(cut.between->gone);
   std::vector<Index> handles(vertexEnds_.size());
   for (std::size_t v = 0; v < handles.size(); ++v) {
     handles[v] = nodeHandles[ends[nodeOf(vertexEnds_[v])] ^ (vertexEnds_[v] & 1)];
@@ -244,20 +234,27 @@ std::vector<double> SphereMesh::errors(Index maxCount) const {
     if (madeBy == kNoIndex) return 0.0;
     return static_cast<double>(merges[madeBy].planeError) * (merges[madeBy].single ? 1 : 2);
   };
+  const auto errorOfParts = [&](const Merge& m) {
+    return errorOf(m.keptBefore) + (m.gone == m.kept ? 0 : errorOf(m.goneBefore));
+  };
   std::vector<double> errors(std::size_t{maxCount} + 1, 0);
   errors[0] = std::numeric_limits<double>::infinity();
-  double sum = merges.empty() ? 0 : errorOf(static_cast<Index>(merges.size() - 1));
-  if (maxCount >= 1) errors[1] = sum;
-  for (std::size_t i = merges.size(); i > 0; --i) {
+  double after = merges.empty() ? 0 : errorOf(static_cast<Index>(merges.size() - 1));
+  if (maxCount >= 1) errors[1] = after;
+  for (Index i = static_cast<Index>(merges.size()); i > 0; --i) {
     const Merge& m = merges[i - 1];
-    const Index after = m.countAfter;
-    if (after + 1 > maxCount) break;
-    sum -= errorOf(static_cast<Index>(i - 1));
-    sum += errorOf(m.keptBefore);
-    if (m.gone != m.kept) sum += errorOf(m.goneBefore);
-    if (i == 1) sum = 0;  // nothing is merged: what is left is rounding
-    const Index before = i > 1 ? merges[i - 2].countAfter : sequence_.initialCount;
-    for (Index count = after + 1; count <= std::min(before, maxCount); ++count) errors[count] = std::max(sum, 0.0);
+    if (m.countAfter + 1 > maxCount) break;
+    double before = after - errorOf(i - 1) + errorOfParts(m);
+    if (i == 1) before = 0;  // nothing is merged: what is left is rounding
+    const Index countBefore = i > 1 ? merges[i - 2].countAfter : sequence_.initialCount;
+    if (countBefore <= maxCount) errors[countBefore] = std::max(before, 0.0);
+    if (m.between != kNoIndex) {
+      const CountBetween& between = sequence_.between[m.between];
+      const double from = between.undone == kNoIndex ? before : after + errorOf(merges[between.undone].goneBefore);
+      errors[m.countAfter + 1] =
+          std::clamp(from + between.planeErrorChange, std::max(before, 0.0), std::max(after, 0.0));
+    }
+    after = before;
   }
   for (double& error : errors) error = std::sqrt(error) * frame_.scale;
   return errors;

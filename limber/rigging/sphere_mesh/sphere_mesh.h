@@ -51,8 +51,7 @@ class SphereMesh {
   std::vector<Index> vertexHandles(Index count) const;
 
   // How far the surface's tangent planes are from the spheres, root mean square over its area, in units of the mesh,
-  // for each count from 0 (infinite) to maxCount. Where two spheres merge at once, the count between has the error of
-  // the one above it. Cost: O(maxCount).
+  // for each count from 0 (infinite) to maxCount; never more for a larger count. Cost: O(maxCount).
   std::vector<double> errors(Index maxCount) const;
 
   // The least count at which every limb has a handle of its own at its end, of those that are at least half as long as
@@ -68,10 +67,9 @@ class SphereMesh {
 
   Cut cutAt(Index count) const;
   void listNodes(Cut& cut) const;
-  void applyBridge(const Cut& cut, SphereMeshLevel& level, std::vector<BorderedEdge>& edges) const;
   void appendLoose(const Cut& cut, SphereMeshLevel& level, std::vector<BorderedEdge>& edges) const;
   std::vector<BorderedEdge> edgesOf(const Cut& cut) const;
-  EdgeEnd climb(EdgeEnd end, Index mergeCount) const;
+  EdgeEnd climb(EdgeEnd end, const Cut& cut) const;
   Sphere toMesh(const Vec3f& center, float radius, bool image) const;
 
   CollapseSequence sequence_;

@@ -35,6 +35,11 @@ struct SphereQuadric {
     for (int i = 0; i < kTerms; ++i) terms[i] += other.terms[i];
     return *this;
   }
+  // Takes away what is part of this.
+  SphereQuadric& operator-=(const SphereQuadric& part) {
+    for (int i = 0; i < kTerms; ++i) terms[i] -= part.terms[i];
+    return *this;
+  }
 
   // Sum of the weights.
   double weight() const { return terms[9]; }
