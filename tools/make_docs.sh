@@ -153,6 +153,10 @@ if [ -d "$characters" ]; then
     {cat_low_resolution,hand_lowres,fish_low_resolution}.obj)
   table=$($limber evaluate handles "${foreign[@]/#/$meshes/}" --counts 8,12,20 --sheet $images/handles_foreign.png --quiet)
   table="$table" perl -0pi -e 's/(<!-- made by [^\n]*: handles -->\n).*(<!-- end of handles -->)/$1\n![Handles of each model at 8, 12 and 20](images\/handles_foreign.png)\n\n$ENV{table}\n$2/s' docs/handles.md
+  for model in chair_1 m2m_spider_static m2m_bird_static m2m_kaiju_static; do
+    $limber rig "$meshes/$model.glb" -o $work/$model.glb --quiet
+    picture $model.glb handles handles_$model.png
+  done
   curved=(m2m_human_male fox_khronos m2m_bird_eagle quaternius_{spider,dolphin,trex,snake} robot_expressive)
   curved=("${curved[@]/#/$characters/}")
   $limber evaluate templates "${curved[@]/%/.glb}" --rigger curve-skeleton --sheet $images/curve_skeletons.png \
