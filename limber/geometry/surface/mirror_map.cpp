@@ -7,6 +7,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "limber/core/parallel.h"
+#include "limber/geometry/mesh/bvh.h"
 #include "limber/geometry/mesh/model_box.h"
 #include "limber/geometry/surface/point_tree.h"
 
@@ -14,20 +15,20 @@ namespace limber {
 
 namespace {
 
-constexpr double kTolerance = 3e-3;  // of the longest side, between a mirrored vertex and its image
-constexpr double kEnough = 0.98;     // of vertices and of area
-constexpr double kMinWidth = 0.01;   // mean distance from the plane, of the longest side: less is a sheet in the plane
+constexpr double kEnough = 0.98;    // of vertices and of area
+constexpr double kMinWidth = 0.01;  // mean distance from the plane, of the longest side: less is a sheet in the plane
 constexpr std::size_t kSamples = 400;
+
+// Of the longest side:
+constexpr double kTolerance = 3e-3;           // between a mirrored vertex and its image
+constexpr double kSurfaceTolerance = 1.5e-2;  // between a mirrored vertex and the surface, where the sides differ
+constexpr double kMaxReach = 3e-2;            // between a mirrored vertex and its image there
+constexpr double kEnoughPaired = 0.75;        // of the vertices there
 
 class MirrorFinder {
  public:
   MirrorFinder(const TriMesh& mesh, const Box& box, const Progress* progress)
-      : mesh_(mesh),
-        progress_(progress),
-        side_(box.longestSide()),
-        middle_(box.center()),
-        reach_(static_cast<float>(kTolerance * side_)),
-        tree_(mesh.positions) {
+      : mesh_(mesh), progress_(progress), side_(box.longestSide()), middle_(box.center()), tree_(mesh.positions) {
     const std::size_t step = std::max<std::size_t>(1, mesh.positions.size() / kSamples);
     for (std::size_t i = 0; i < mesh.positions.size(); i += step) samples_.push_back(static_cast<Index>(i));
   }
@@ -35,6 +36,16 @@ class MirrorFinder {
   std::optional<MirrorMap> run();
 
  private:
+  // What counts as an image: a vertex where the sides are equal; where they only look equal a vertex that is no farther
+  // away than the next one on its own side, and the surface near by.
+  struct Sides {
+    double reach = 0;   // of the longest side
+    double enough = 0;  // of vertices and of area that have one
+    bool onlyLookEqual = false;
+  };
+  std::optional<MirrorMap> find(const Sides& sides);
+  double vertexSpacing() const;
+  bool surfaceFits(const MirrorPlane& plane);
   Vec3f reflect(const MirrorPlane& plane, const Vec3f& p) const {
     const Vec3 q = p.cast<double>();
     return (q - 2 * (plane.normal.dot(q) - plane.offset) * plane.normal).cast<float>();
@@ -43,7 +54,7 @@ class MirrorFinder {
     return tree_.nearest(reflect(plane, mesh_.positions[v]), widen * reach_);
   }
   bool isCancelled() const { return progress_ && progress_->cancelled(); }
-  double sampleFit(const MirrorPlane& plane) const;
+  double sampleFit(const MirrorPlane& plane, std::size_t step = 1) const;
   MirrorPlane straightened(MirrorPlane plane) const;
   MirrorPlane refined(const MirrorPlane& plane) const;
   std::optional<MirrorMap> matched(const MirrorPlane& plane) const;
@@ -55,18 +66,22 @@ class MirrorFinder {
   const Progress* progress_;
   double side_;
   Vec3 middle_;
-  float reach_;  // kTolerance in units of the mesh
+  Sides sides_;
+  std::optional<Bvh> surface_;  // made when it is first needed
+  float reach_ = 0;             // in units of the mesh
   PointTree tree_;
   std::vector<Index> samples_;
   Vec3 centroid_ = Vec3::Zero();  // of the surface
   Mat3 principal_ = Mat3::Identity();
 };
 
-// The fraction of sampled vertices that have an image.
-double MirrorFinder::sampleFit(const MirrorPlane& plane) const {
-  std::size_t found = 0;
-  for (const Index v : samples_) found += imageOf(plane, v) != kNoIndex ? 1 : 0;
-  return static_cast<double>(found) / static_cast<double>(samples_.size());
+// The fraction of every step-th sampled vertex that have an image.
+double MirrorFinder::sampleFit(const MirrorPlane& plane, std::size_t step) const {
+  double found = 0, all = 0;
+  for (std::size_t i = 0; i < samples_.size(); i += step, ++all) {
+    if (imageOf(plane, samples_[i]) != kNoIndex) ++found;
+  }
+  return found / all;
 }
 
 // The plane moved to the median of the midpoints of vertices and images, if that is a noticeable distance away.
@@ -118,8 +133,8 @@ bool MirrorFinder::enough(const MirrorMap& map) const {
     if (whole) matchedArea += triangleArea;
   }
   const double count = static_cast<double>(map.image.size());
-  return static_cast<double>(matchedCount) >= kEnough * count && matchedArea >= kEnough * area &&
-         width >= kMinWidth * side_ * count;
+  return static_cast<double>(matchedCount) >= sides_.enough * count && matchedArea >= sides_.enough * area &&
+         width >= kMinWidth * side_ * static_cast<double>(matchedCount);
 }
 
 // Vertices that are not each other's nearest, one after the other, take what is left within reach.
@@ -157,7 +172,7 @@ std::optional<MirrorMap> MirrorFinder::matched(const MirrorPlane& plane) const {
       left.push_back(v);
     }
   }
-  if (left.size() > count / 4) return std::nullopt;
+  if (left.size() > count / (sides_.onlyLookEqual ? 2 : 4)) return std::nullopt;
   matchLeft(left, map);
   if (!enough(map)) return std::nullopt;
   return map;
@@ -184,8 +199,51 @@ void MirrorFinder::measureSurface() {
   centroid_ += middle_;
 }
 
+// Whether nearly all of the surface, mirrored, lies on the surface.
+bool MirrorFinder::surfaceFits(const MirrorPlane& plane) {
+  if (!surface_) surface_.emplace(mesh_);
+  double fits = 0, all = 0;
+  const auto take = [&](const Vec3f& point, double weight) {
+    all += weight;
+    const double distance = surface_->nearestPoint(reflect(plane, point).cast<double>()).distance;
+    if (distance <= kSurfaceTolerance * side_) fits += weight;
+  };
+  for (const Index v : samples_) take(mesh_.positions[v], 1);
+  if (fits < kEnough * all) return false;
+  fits = all = 0;
+  const std::size_t step = std::max<std::size_t>(1, mesh_.triangles.size() / (4 * kSamples));
+  for (std::size_t i = 0; i < mesh_.triangles.size(); i += step) {
+    const Triangle& t = mesh_.triangles[i];
+    const Vec3f a = mesh_.positions[t[0]], b = mesh_.positions[t[1]], c = mesh_.positions[t[2]];
+    take((a + b + c) / 3, (b - a).cross(c - a).norm());
+  }
+  return fits >= kEnough * all;
+}
+
+// Median length of the edges of some triangles.
+double MirrorFinder::vertexSpacing() const {
+  std::vector<double> lengths;
+  const std::size_t step = std::max<std::size_t>(1, mesh_.triangles.size() / kSamples);
+  for (std::size_t i = 0; i < mesh_.triangles.size(); i += step) {
+    const Triangle& t = mesh_.triangles[i];
+    for (int k = 0; k < 3; ++k) lengths.push_back((mesh_.position(t[k]) - mesh_.position(t[(k + 1) % 3])).norm());
+  }
+  const auto median = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+  std::nth_element(lengths.begin(), median, lengths.end());
+  return *median;
+}
+
 std::optional<MirrorMap> MirrorFinder::run() {
   measureSurface();
+  if (std::optional<MirrorMap> map = find({kTolerance, kEnough, false})) return map;
+  if (mesh_.triangles.empty() || isCancelled()) return std::nullopt;
+  const double reach = std::clamp(vertexSpacing() / side_, kSurfaceTolerance, kMaxReach);
+  return find({reach, kEnoughPaired, true});
+}
+
+std::optional<MirrorMap> MirrorFinder::find(const Sides& sides) {
+  sides_ = sides;
+  reach_ = static_cast<float>(sides.reach * side_);
   const Mat3& axes = principal_;
   const std::array<Vec3, 6> normals = {Vec3::UnitX(), Vec3::UnitZ(), Vec3::UnitY(),
                                        axes.col(0),   axes.col(1),   axes.col(2)};
@@ -194,10 +252,13 @@ std::optional<MirrorMap> MirrorFinder::run() {
       if (isCancelled()) return std::nullopt;
       if (i >= 3 && center == middle_) continue;  // the box says nothing about slanting planes
       MirrorPlane plane{normals[i], normals[i].dot(center)};
+      const std::size_t step = sides.onlyLookEqual ? 8 : 1;  // within so large a reach the search is slow
+      if (sides.onlyLookEqual && sampleFit(plane, step) < 0.3) continue;
       if (i >= 3) plane = straightened(plane);
-      if (sampleFit(plane) < 0.5) continue;
+      if (sampleFit(plane, step) < 0.5) continue;
       plane = refined(plane);
-      if (sampleFit(plane) < 0.95) continue;
+      if (sampleFit(plane) < (sides.onlyLookEqual ? kEnoughPaired : 0.95)) continue;
+      if (sides.onlyLookEqual && !surfaceFits(plane)) continue;
       if (std::optional<MirrorMap> map = matched(plane)) return map;
     }
   }

@@ -77,6 +77,20 @@ TEST(MirrorMap, AllowsForAFewVerticesAndALittleNoise) {
   EXPECT_EQ(unmatched(*map), 2u);
 }
 
+// As in a scan or a sculpture: the same shape, vertices elsewhere.
+TEST(MirrorMap, FindsSidesThatOnlyLookEqual) {
+  TriMesh mesh = testing::jittered(blockBiped(2), 0.01f);
+  for (Vec3f& p : mesh.positions) {
+    p.z() += 0.1f * p.y() * p.y();  // front and back differ
+    if (p.x() < -0.1f) p.y() += 0.08f;
+  }
+  const auto map = findMirror(mesh);
+  ASSERT_TRUE(map);
+  EXPECT_EQ(map->plane.normal, Vec3(1, 0, 0));
+  expectMirrors(mesh, *map, 0.3);
+  EXPECT_LT(unmatched(*map), mesh.positions.size() / 10);
+}
+
 TEST(MirrorMap, SeesNoneWhereThereIsNone) {
   EXPECT_FALSE(findMirror(testing::jittered(testing::ball(3), 0.05f)));
   TriMesh lame = blockBiped(1);  // one arm shorter
