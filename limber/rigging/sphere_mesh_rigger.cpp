@@ -13,7 +13,6 @@ namespace limber {
 namespace {
 
 constexpr Index kFewestSuggested = 5, kMaxSuggested = 64, kMaxListed = 8;
-constexpr Index kUsual = 20;           // handles that suit a character of four limbs and a head
 constexpr double kNeighborhood = 1.4;  // the trend is taken from a count divided by this to one multiplied by it
 
 // The number in a handle's name: one for each mirror pair or single handle, in the order of the joints.
@@ -38,10 +37,7 @@ class ErrorCurve {
   explicit ErrorCurve(std::vector<double> errors) : errors_(std::move(errors)), floor_(1e-6 * errors_[1]) {}
 
   Index most() const { return static_cast<Index>(errors_.size() - 1); }
-  // Whether one sphere less is worse, and one more is not the same (which it is where two spheres come at once).
-  bool isStep(Index count) const {
-    return errors_[count - 1] > errors_[count] && errors_[count] > errors_[count + 1] && errors_[count] > floor_;
-  }
+  bool isWorth(Index count) const { return errors_[count - 1] > errors_[count] && errors_[count] > floor_; }
   // How much steeper the error falls up to a count than from there on.
   double bend(Index count) const {
     const double here = at(count), before = at(count / kNeighborhood), after = at(count * kNeighborhood);
@@ -60,10 +56,10 @@ class ErrorCurve {
   double floor_;  // less is no error
 };
 
-// Few handles make poor limbs, many are hard to take hold of.
-double distanceFromUsual(Index count) {
-  const double ratio = std::log(static_cast<double>(count) / kUsual);
-  const double width = ratio < 0 ? 0.4 : 0.7;
+// Few handles make poor limbs; many are hard to take hold of, and lie about the trunk in rings.
+double distanceFromUsual(Index count, Index usual) {
+  const double ratio = std::log(static_cast<double>(count) / usual);
+  const double width = ratio < 0 ? 0.3 : 0.5;
   return 0.7 * (ratio / width) * (ratio / width);
 }
 
@@ -80,16 +76,22 @@ Index suggestedFrom() {
 }
 
 std::vector<HandleSuggestion> suggestHandles(const SphereMesh& spheres) {
-  return suggestHandles(spheres.errors(suggestedFrom()), spheres.maxSpheres(), spheres.fewestForLimbs());
+  const LimbCount limbs = spheres.limbs();
+  // Three for each limb, so that it bends, and some for the trunk.
+  const Index usual = std::max<Index>(10, 3 * limbs.limbs + 5);
+  // Where an end is lost that early, it is no limb that anybody would count.
+  const bool allHaveHandles = 2 * limbs.fewestHandles <= 3 * usual;
+  return suggestHandles(spheres.errors(suggestedFrom()), spheres.maxSpheres(), usual,
+                        allHaveHandles ? limbs.fewestHandles : 1);
 }
 
-std::vector<HandleSuggestion> suggestHandles(std::vector<double> errors, Index maxHandles, Index fewest) {
+std::vector<HandleSuggestion> suggestHandles(std::vector<double> errors, Index maxHandles, Index usual, Index fewest) {
   const ErrorCurve curve(std::move(errors));
   std::vector<HandleSuggestion> steps;
   const Index most = std::min(kMaxSuggested, static_cast<Index>(curve.most() / kNeighborhood));
   for (Index count = std::max(kFewestSuggested, fewest); count <= most; ++count) {
-    if (!curve.isStep(count)) continue;
-    const double clearness = curve.bend(count) - distanceFromUsual(count);
+    if (!curve.isWorth(count)) continue;
+    const double clearness = curve.bend(count) - distanceFromUsual(count, usual);
     steps.push_back({count, 1 / (1 + std::exp(-2 * clearness))});
   }
   std::stable_sort(steps.begin(), steps.end(), [](const auto& a, const auto& b) { return a.score > b.score; });
@@ -101,7 +103,7 @@ std::vector<HandleSuggestion> suggestHandles(std::vector<double> errors, Index m
     });
     if (isNew && suggestions.size() < kMaxListed) suggestions.push_back(step);
   }
-  if (suggestions.empty()) suggestions.push_back({std::min(std::max(kUsual, std::min(fewest, most)), maxHandles), 0});
+  if (suggestions.empty()) suggestions.push_back({std::min(std::max(usual, std::min(fewest, most)), maxHandles), 0});
   return suggestions;
 }
 

@@ -7,12 +7,13 @@
 namespace limber {
 
 // Counts of handles worth choosing, best first: where the error (SphereMesh::errors) falls steeply up to the count and
-// slowly from there on, both in logarithms; counts near 20 before others, and none at which a long limb is without a
-// handle (SphereMesh::fewestForLimbs). There is always at least one. Cost: O(1).
+// slowly from there on, both in logarithms; counts near three for each limb and five more before others, and none at
+// which a long limb is without a handle (SphereMesh::limbs). There is always at least one. Cost: O(1).
 std::vector<HandleSuggestion> suggestHandles(const SphereMesh& spheres);
 // The same of any errors for each count from 0 to suggestedFrom(), of a model that can have up to maxHandles and needs
-// `fewest`.
-std::vector<HandleSuggestion> suggestHandles(std::vector<double> errors, Index maxHandles, Index fewest = 1);
+// `fewest`, for which `usual` suit most.
+std::vector<HandleSuggestion> suggestHandles(std::vector<double> errors, Index maxHandles, Index usual = 20,
+                                             Index fewest = 1);
 Index suggestedFrom();
 
 // The skeleton of `count` handles: a joint at each sphere's centre with the sphere's radius, without rotation, all in

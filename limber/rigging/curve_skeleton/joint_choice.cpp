@@ -43,7 +43,8 @@ class JointChooser {
     std::vector<double> errors = {std::numeric_limits<double>::infinity()};
     for (bool goesOn = true; goesOn && errors.size() <= most; goesOn = takeBest(kNoIndex)) {
       const double rest = std::min(errors.back(), offers_.empty() ? 0 : offers_.top().value);
-      errors.resize(count_ + std::size_t{1}, rest);
+      errors.resize(count_, errors.size() == 1 ? rest : errors.back());
+      errors.push_back(rest);
     }
     errors.resize(most + std::size_t{1}, 0);
     return errors;

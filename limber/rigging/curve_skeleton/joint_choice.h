@@ -33,7 +33,7 @@ struct CurveTree {
 SphereMeshLevel chooseJoints(const CurveTree& tree, Index count);
 
 // For each count from 0 (infinite) to maxCount what counts most of what is not joined yet, as above: a length, never
-// growing. Where two joints come at once, the count between has the value of the one above it.
+// growing. Where two joints come at once, the count between has the value of the one below it.
 std::vector<double> choiceErrors(const CurveTree& tree, Index maxCount);
 
 }  // namespace limber

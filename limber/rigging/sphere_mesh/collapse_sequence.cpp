@@ -210,7 +210,8 @@ void Collapser::loseEnds(const Merge& m, Index end, Index countBefore) {
     endOf_[node] = kNoIndex;
     if (lost == kNoIndex || lost == end) continue;
     if (std::find(endOf_.begin(), endOf_.end(), lost) != endOf_.end()) continue;  // others have it still
-    sequence_.lostEnds.push_back({countBefore, static_cast<float>(ends_[lost].length)});
+    const Index limbs = ends_[lost].isOnPlane ? 1 : 2;
+    sequence_.lostEnds.push_back({countBefore, limbs, static_cast<float>(ends_[lost].length)});
   }
   endOf_[m.kept] = end;
 }

@@ -58,6 +58,7 @@ struct CountBetween {
 // The end of a limb (limbEnds) that no sphere has for itself from a merge on.
 struct LostEnd {
   Index countBefore = 0;  // spheres until then
+  Index limbs = 0;        // 2 where its image is another limb
   float length = 0;       // of the limb, in the collapse's space
 };
 

@@ -56,7 +56,7 @@ TEST(HandleTree, IsATreeWithParentsFirstAtEveryCount) {
 }
 
 TEST(HandleTree, UsesOnlyNeighborsWithoutSymmetry) {
-  const SphereMesh spheres = sphereMeshOf(testing::jittered(testing::blockBiped(1), 0.05f));
+  const SphereMesh spheres = sphereMeshOf(testing::jittered(testing::blockBiped(1), 0.4f));
   ASSERT_FALSE(spheres.mirror());
   const SphereMeshLevel level = spheres.level(40);
   const std::set<VertexPair> edges(level.edges.begin(), level.edges.end());

@@ -120,13 +120,16 @@ TEST(LimbEnds, EachHasAHandleOfItsOwnAtEveryCountThatSuffices) {
         EXPECT_TRUE(hasItsOwn) << "leg " << leg;
       }
     }
-    EXPECT_LE(spheres.fewestForLimbs(), 6u);
-    EXPECT_GE(spheres.fewestForLimbs(), 5u);  // four feet and the seat
+    EXPECT_EQ(spheres.limbs().limbs, 4u);
+    EXPECT_LE(spheres.limbs().fewestHandles, 6u);
+    EXPECT_GE(spheres.limbs().fewestHandles, 5u);  // four feet and the seat
   }
 }
 
 TEST(LimbEnds, AModelWithoutLimbsNeedsOneHandle) {
-  EXPECT_EQ(testing::sphereMeshOf(testing::ball(3)).fewestForLimbs(), 1u);
+  const LimbCount limbs = testing::sphereMeshOf(testing::ball(3)).limbs();
+  EXPECT_EQ(limbs.limbs, 0u);
+  EXPECT_EQ(limbs.fewestHandles, 1u);
 }
 
 }  // namespace limber

@@ -256,18 +256,22 @@ std::vector<double> SphereMesh::errors(Index maxCount) const {
     }
     after = before;
   }
-  for (double& error : errors) error = std::sqrt(error) * frame_.scale;
+  for (std::size_t count = 1; count < errors.size(); ++count) {
+    errors[count] = std::min(errors[count - 1], std::sqrt(errors[count]) * frame_.scale);
+  }
   return errors;
 }
 
-Index SphereMesh::fewestForLimbs() const {
+LimbCount SphereMesh::limbs() const {
+  constexpr float kLong = 0.5f, kCounted = 0.25f;  // of the longest limb
   float longest = 0;
   for (const LostEnd& end : sequence_.lostEnds) longest = std::max(longest, end.length);
-  Index fewest = 1;
+  LimbCount count;
   for (const LostEnd& end : sequence_.lostEnds) {
-    if (end.length >= 0.5f * longest) fewest = std::max(fewest, end.countBefore);
+    if (end.length >= kCounted * longest) count.limbs += end.limbs;
+    if (end.length >= kLong * longest) count.fewestHandles = std::max(count.fewestHandles, end.countBefore);
   }
-  return fewest;
+  return count;
 }
 
 Sphere SphereMesh::toMesh(const Vec3f& center, float radius, bool image) const {

@@ -25,6 +25,11 @@ struct SphereMeshLevel {
                                 // pieces that are apart; empty where it is not known
 };
 
+struct LimbCount {
+  Index limbs = 0;          // that are at least a quarter as long as the longest
+  Index fewestHandles = 1;  // at which each that is at least half as long as the longest has one of its own at its end
+};
+
 // Sphere-Meshes: Shape Approximation using Spherical Quadric Error Metrics; Thiery, Guy, Boubekeur; 2013.
 //
 // The collapse starts from every vertex as a sphere of radius 0 and merges neighbours, cheapest first, into the sphere
@@ -54,9 +59,8 @@ class SphereMesh {
   // for each count from 0 (infinite) to maxCount; never more for a larger count. Cost: O(maxCount).
   std::vector<double> errors(Index maxCount) const;
 
-  // The least count at which every limb has a handle of its own at its end, of those that are at least half as long as
-  // the longest; 1 where the model has no limbs. Cost: O(#limbs).
-  Index fewestForLimbs() const;
+  // Cost: O(#limbs).
+  LimbCount limbs() const;
 
   // The record itself, in the collapse's own space.
   const CollapseSequence& sequence() const { return sequence_; }
