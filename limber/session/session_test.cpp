@@ -110,7 +110,11 @@ TEST(Session, ACancelledDragNeverHappened) {
 
 TEST(Session, AnotherNumberOfHandlesKeepsThePoseAndComesBackExactly) {
   Session session = opened();
-  drag(session, lastJoint(session), DragMode::kTurn, {0.1, 0.3, 0});
+  const std::vector<Affine> rest = restGlobals(session.state().rig->skeleton());
+  const auto hand = std::max_element(rest.begin(), rest.end(), [](const Affine& a, const Affine& b) {
+    return a.translation().x() < b.translation().x();
+  });
+  drag(session, static_cast<Index>(hand - rest.begin()), DragMode::kTurn, {0.1, 0.3, 0});
   const Pose posed = session.state().pose;
   const std::vector<Vec3f> surface = posedPositions(*session.state().rig, posed);
   run(session, SetHandles{50});

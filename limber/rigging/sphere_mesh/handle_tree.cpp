@@ -1,6 +1,7 @@
 #include "limber/rigging/sphere_mesh/handle_tree.h"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
 #include "limber/core/disjoint_sets.h"
@@ -33,6 +34,7 @@ class TreeMaker {
   bool onPlane(Index h) const { return level_.images.empty() || level_.images[h] == h; }
   bool hasLostImage(Index h) const { return !level_.images.empty() && level_.images[h] == kNoIndex; }
   double gap(Index a, Index b) const;
+  double conductance(Index a, Index b, double border) const;
 
   void connect(Index a, Index b) {
     neighbors_[a].push_back(b);
@@ -63,11 +65,18 @@ double TreeMaker::gap(Index a, Index b) const {
   return std::max(0.0, distance - s.radius - t.radius) + 0.25 * distance;
 }
 
-// The edges by their borders, the longest first; what has none by the gaps, the narrowest first. Of an edge and its
-// image the one that begins at an orbit's first handle.
+// As of a rod from one to the other: its cross section, about the border by how thick the two are, over its length.
+double TreeMaker::conductance(Index a, Index b, double border) const {
+  const Sphere &s = level_.spheres[a], &t = level_.spheres[b];
+  const double flat = 0.01 * (s.center - t.center).norm();  // such parts are thin, not nothing
+  return border * (std::sqrt(s.radius * t.radius) + flat) / std::max(gap(a, b), 1e-9);
+}
+
+// The edges by how well they conduct, the best first; what has no border by the gaps, the narrowest first. Of an edge
+// and its image the one that begins at an orbit's first handle.
 std::vector<VertexPair> TreeMaker::closestFirst() const {
   struct Link {
-    double border = 0, gap = 0;
+    double conductance = 0, gap = 0;
     VertexPair ends;
   };
   std::vector<Link> links;
@@ -79,10 +88,11 @@ std::vector<VertexPair> TreeMaker::closestFirst() const {
       if (orbitOf(b) != b) continue;
       std::swap(a, b);
     }
-    links.push_back({level_.borders.empty() ? 0 : level_.borders[e], gap(a, b), {a, b}});
+    const double border = level_.borders.empty() ? 0 : level_.borders[e];
+    links.push_back({conductance(a, b, border), gap(a, b), {a, b}});
   }
   std::sort(links.begin(), links.end(), [](const Link& a, const Link& b) {
-    return std::tuple(-a.border, a.gap, a.ends) < std::tuple(-b.border, b.gap, b.ends);
+    return std::tuple(-a.conductance, a.gap, a.ends) < std::tuple(-b.conductance, b.gap, b.ends);
   });
   std::vector<VertexPair> edges;
   edges.reserve(links.size());
