@@ -251,8 +251,7 @@ std::vector<double> SphereMesh::errors(Index maxCount) const {
     if (m.between != kNoIndex) {
       const CountBetween& between = sequence_.between[m.between];
       const double from = between.undone == kNoIndex ? before : after + errorOf(merges[between.undone].goneBefore);
-      errors[m.countAfter + 1] =
-          std::clamp(from + between.planeErrorChange, std::max(before, 0.0), std::max(after, 0.0));
+      errors[m.countAfter + 1] = std::max(from + between.planeErrorChange, 0.0);
     }
     after = before;
   }
