@@ -176,10 +176,14 @@ void Collapser::findEnds() {
     graph.edges.push_back({numbers[edge.from], makeEnd(numbers[nodeOf(edge.to)], crossesOf(edge.to))});
   }
   endOf_.assign(clusters_.size(), kNoIndex);
-  for (const LimbEnd& end : limbEnds(graph)) {
+  const std::vector<LimbEnd> limbs = limbEnds(graph);
+  constexpr double kAlike = 0.8;  // of a length; such limbs are equal ones, as legs are: none goes before the others
+  double alike = 0;
+  for (const LimbEnd& end : limbs) {  // the longest first
     for (const Index node : end.nodes) endOf_[nodes[node]] = static_cast<Index>(ends_.size());
-    const double squared = end.length * end.length;
-    ends_.push_back({end.length, costOfEnds_ * squared * squared, end.isOnPlane});
+    if (alike == 0 || end.length < kAlike * alike) alike = end.length;
+    const double squared = alike * alike;
+    ends_.push_back({alike, costOfEnds_ * squared * squared, end.isOnPlane});
   }
   for (Index e = 0; e < sequence_.edges.size(); ++e) {
     if (graph_.alive(e) && jointEnd(e).cost > 0) refresh(e);

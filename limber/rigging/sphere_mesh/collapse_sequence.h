@@ -59,7 +59,7 @@ struct CountBetween {
 struct LostEnd {
   Index countBefore = 0;  // spheres until then
   Index limbs = 0;        // 2 where its image is another limb
-  float length = 0;       // of the limb, in the collapse's space
+  float length = 0;       // of the longest limb that is about as long, in the collapse's space
 };
 
 struct CollapseSequence {

@@ -126,6 +126,19 @@ TEST(LimbEnds, EachHasAHandleOfItsOwnAtEveryCountThatSuffices) {
   }
 }
 
+// A seat of legs that differ by a cell: none goes before the others because of that.
+TEST(LimbEnds, OfAboutTheSameLengthAreLostForTheSame) {
+  Cells cells = stoolCells();
+  for (const int x : {0, kSeat - 1}) cells.erase({x, 0, 0});
+  const SphereMesh spheres = testing::sphereMeshOf(testing::subdivided(testing::cubes(cells)));
+  Index limbs = 0;
+  for (const LostEnd& end : spheres.sequence().lostEnds) {
+    limbs += end.limbs;
+    EXPECT_EQ(end.length, spheres.sequence().lostEnds.front().length);
+  }
+  EXPECT_EQ(limbs, 4u);
+}
+
 TEST(LimbEnds, AModelWithoutLimbsNeedsOneHandle) {
   const LimbCount limbs = testing::sphereMeshOf(testing::ball(3)).limbs();
   EXPECT_EQ(limbs.limbs, 0u);
