@@ -5,7 +5,7 @@
 const plainCalls = new Set(['methods', 'rigChoices', 'sampleMotions', 'samplePoses', 'createSession', 'forkSession', 'record', 'free']);
 const limberCalls = ['rig', 'setShapeWeights', 'methods', 'rigChoices', 'sampleMotions', 'samplePoses', 'checkPly', 'crowd'];
 const sessionCalls = ['open', 'add', 'places', 'memberModel', 'memberPosed', 'memberSkin', 'pickMember', 'addMotion', 'transferRig', 'sourceJoints', 'paths',
-  'curve', 'run', 'pick', 'surface', 'weights', 'preview', 'parts', 'skin', 'handles', 'turns', 'model', 'deformation', 'posed', 'export', 'pose', 'record',
+  'curve', 'run', 'pick', 'surface', 'weights', 'preview', 'parts', 'skin', 'handles', 'turns', 'scales', 'model', 'deformation', 'posed', 'export', 'pose', 'record',
   'measures', 'rigCheck', 'saveModel', 'liveBegin', 'liveFrame', 'liveEnd', 'liveRecorded', 'free'];
 
 export class WorkerError extends Error {
