@@ -196,6 +196,11 @@ void MirrorFinder::measureSurface() {
   }
   centroid_ /= weight;
   principal_ = Eigen::SelfAdjointEigenSolver<Mat3>(second / weight - centroid_ * centroid_.transpose()).eigenvectors();
+  for (int axis = 0; axis < 3; ++axis) {  // as the axis of space that it is nearest to
+    Eigen::Index nearest = 0;
+    principal_.col(axis).cwiseAbs().maxCoeff(&nearest);
+    if (principal_(nearest, axis) < 0) principal_.col(axis) *= -1;
+  }
   centroid_ += middle_;
 }
 

@@ -65,6 +65,18 @@ TEST(MirrorMap, FindsSlantingPlanes) {
   expectMirrors(mesh, *map, 0.02);
 }
 
+// The positive side stays the model's left, whichever way it is turned a little.
+TEST(MirrorMap, SlantingPlanesKeepTheSides) {
+  for (const float degrees : {-20.0f, -7.0f, 3.0f, 11.0f}) {
+    TriMesh mesh = blockBiped(1);
+    const Eigen::AngleAxisf turn(degrees * 0.0174533f, Vec3f(0.3f, 1, 0.2f).normalized());
+    for (Vec3f& p : mesh.positions) p = turn * Vec3f(p.x(), p.y(), p.z() + 0.1f * p.y() * p.y());
+    const auto map = findMirror(mesh);
+    ASSERT_TRUE(map);
+    EXPECT_GT(map->plane.normal.x(), 0.9) << degrees;
+  }
+}
+
 TEST(MirrorMap, AllowsForAFewVerticesAndALittleNoise) {
   TriMesh mesh = testing::jittered(blockBiped(2), 0.002f);
   const auto noisy = findMirror(mesh);
