@@ -25,6 +25,13 @@ constexpr double kSurfaceTolerance = 1.5e-2;  // between a mirrored vertex and t
 constexpr double kMaxReach = 3e-2;            // between a mirrored vertex and its image there
 constexpr double kEnoughPaired = 0.75;        // of the vertices there
 
+// Of at least one; the upper of two.
+double medianOf(std::vector<double>& values) {
+  const auto median = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), median, values.end());
+  return *median;
+}
+
 class MirrorFinder {
  public:
   MirrorFinder(const TriMesh& mesh, const Box& box, const Progress* progress)
@@ -75,7 +82,7 @@ class MirrorFinder {
   Mat3 principal_ = Mat3::Identity();
 };
 
-// The fraction of every step-th sampled vertex that have an image.
+// Of every step-th sampled vertex the fraction that has an image.
 double MirrorFinder::sampleFit(const MirrorPlane& plane, std::size_t step) const {
   double found = 0, all = 0;
   for (std::size_t i = 0; i < samples_.size(); i += step, ++all) {
@@ -92,9 +99,8 @@ MirrorPlane MirrorFinder::refined(const MirrorPlane& plane) const {
     if (image != kNoIndex) middles.push_back(0.5 * plane.normal.dot(mesh_.position(v) + mesh_.position(image)));
   }
   if (middles.empty()) return plane;
-  const auto median = middles.begin() + static_cast<std::ptrdiff_t>(middles.size() / 2);
-  std::nth_element(middles.begin(), median, middles.end());
-  return std::abs(*median - plane.offset) < 0.02 * kTolerance * side_ ? plane : MirrorPlane{plane.normal, *median};
+  const double median = medianOf(middles);
+  return std::abs(median - plane.offset) < 0.02 * kTolerance * side_ ? plane : MirrorPlane{plane.normal, median};
 }
 
 // A plane turned and moved so that it lies across and halfway between vertices and images, looked for ever closer.
@@ -225,7 +231,7 @@ bool MirrorFinder::surfaceFits(const MirrorPlane& plane) {
   return fits >= kEnough * all;
 }
 
-// Median length of the edges of some triangles.
+// Median length of the edges of some triangles, in units of the mesh.
 double MirrorFinder::vertexSpacing() const {
   std::vector<double> lengths;
   const std::size_t step = std::max<std::size_t>(1, mesh_.triangles.size() / kSamples);
@@ -233,9 +239,7 @@ double MirrorFinder::vertexSpacing() const {
     const Triangle& t = mesh_.triangles[i];
     for (int k = 0; k < 3; ++k) lengths.push_back((mesh_.position(t[k]) - mesh_.position(t[(k + 1) % 3])).norm());
   }
-  const auto median = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-  std::nth_element(lengths.begin(), median, lengths.end());
-  return *median;
+  return medianOf(lengths);
 }
 
 std::optional<MirrorMap> MirrorFinder::run() {

@@ -352,8 +352,7 @@ Index Collapser::record(CountBetween between, const SphereQuadric& quadric, cons
   between.planeErrorChange = planeError(quadric, moments, sphere);
   for (const Index node : {between.node, between.gone}) {
     if (node == kNoIndex || madeBy_[node] == kNoIndex) continue;
-    const Merge& m = sequence_.merges[madeBy_[node]];
-    between.planeErrorChange -= m.planeError * (m.single ? 1.0f : 2.0f);
+    between.planeErrorChange -= static_cast<float>(sequence_.merges[madeBy_[node]].planeErrorOfAll());
   }
   sequence_.between.push_back(between);
   return static_cast<Index>(sequence_.between.size() - 1);

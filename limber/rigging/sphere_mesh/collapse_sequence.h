@@ -39,6 +39,8 @@ struct Merge {
   Vec3f center = Vec3f::Zero();  // of the result, on the side of kept
   float radius = 0;
   float weight = 0;  // of the result's surface, of one sphere if it is a pair; all of the surface weighs 1
+
+  double planeErrorOfAll() const { return double{planeError} * (single ? 1 : 2); }  // of both, if it is a pair
 };
 
 // The count between, where a merge takes two spheres at once, is one of these:

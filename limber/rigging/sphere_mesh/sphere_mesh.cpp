@@ -230,10 +230,7 @@ std::vector<Index> SphereMesh::vertexHandles(Index count) const {
 std::vector<double> SphereMesh::errors(Index maxCount) const {
   maxCount = std::min(maxCount, maxSpheres());
   const auto& merges = sequence_.merges;
-  const auto errorOf = [&](Index madeBy) {
-    if (madeBy == kNoIndex) return 0.0;
-    return static_cast<double>(merges[madeBy].planeError) * (merges[madeBy].single ? 1 : 2);
-  };
+  const auto errorOf = [&](Index madeBy) { return madeBy == kNoIndex ? 0.0 : merges[madeBy].planeErrorOfAll(); };
   const auto errorOfParts = [&](const Merge& m) {
     return errorOf(m.keptBefore) + (m.gone == m.kept ? 0 : errorOf(m.goneBefore));
   };

@@ -1,4 +1,4 @@
-// How the selected joint stands, in numbers that can be typed: its turn and scale from the rest pose, its place in the world.
+// The selected joint in numbers that can be typed: its rotation and scale from the rest pose, its position in the world.
 import type { PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
 import type { Stance, Vector } from '../engine/messages';
