@@ -17,11 +17,12 @@ class Handles : public Cli {
 TEST_F(Handles, AreMeasuredAtEachCount) {
   for (const char* sample : {"quadruped", "winged", "robot"}) make(sample);
   const Result result = run({"evaluate", "handles", "quadruped.glb", "winged.glb", "robot.glb", "--counts", "8,20",
-                             "--sheet", "sheet.png", "-q"});
+                             "--sheet", "sheet.png", "--moves", "moves.png", "-q"});
   EXPECT_EQ(result.code, 0) << result.error;
   EXPECT_THAT(result.out, AllOf(HasSubstr("| quadruped | 8 |"), HasSubstr("| quadruped | 20 |"),
                                 HasSubstr("| winged | 20 |"), HasSubstr("| robot | 8 |"), HasSubstr("**all 6**")));
   EXPECT_EQ(content("sheet.png").substr(1, 3), "PNG");
+  EXPECT_EQ(content("moves.png").substr(1, 3), "PNG");
 }
 
 TEST_F(Handles, CountsAboveTheVerticesAreLeftOutAndSaid) {

@@ -20,21 +20,29 @@ namespace limber {
 //                 of another end
 // strayParents    handles whose region touches no part of their parent's region. A region is the vertices that follow a
 //                 handle more than any other; pieces of the surface touch where they are nearest (pieceLinks)
+// unequalEnds     ends that are not covered although an equal one is: as long and as thick, within a tenth
 // overAir         fraction of all weight, by area, that is cut off from a handle's region (WeightQuality::islands)
+// movedBeside     of the area, what follows a handle or its children by a tenth and more, but is neither of their
+//                 regions nor of one that touches these; mean over the handles but the root. A leg that another drags
 struct HandleQuality {
-  Index handles = 0, idle = 0, ends = 0, coveredEnds = 0, strayParents = 0;
-  double inside = 0, overAir = 0;
+  Index handles = 0, idle = 0, ends = 0, coveredEnds = 0, unequalEnds = 0, strayParents = 0;
+  double inside = 0, overAir = 0, movedBeside = 0;
+};
+
+struct LimbEndOnModel {
+  Vec3 position = Vec3::Zero();
+  double reach = 0, depth = 0;  // as of a LimbTip
 };
 
 // The ends of the model's limbs by the longest paths through its inside (limbTips), of those that are longer than what
 // they leave is thick: another method than that which positions handles. None where nothing lies inside. In the model's
 // space. Cost: that of measureBody.
-std::vector<Vec3> limbEndsOf(const TriMesh& mesh);
+std::vector<LimbEndOnModel> limbEndsOf(const TriMesh& mesh);
 
 // model  welded (weldedModel)
 // ends   limbEndsOf its mesh
 // Cost: that of measureJointPlacement and measureWeights.
-HandleQuality measureHandles(const SkinnedModel& model, std::span<const Vec3> ends);
+HandleQuality measureHandles(const SkinnedModel& model, std::span<const LimbEndOnModel> ends);
 
 struct HandleTableRow {
   std::string file;  // without folder and extension

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "limber/geometry/mesh/areas.h"
 #include "limber/geometry/mesh/testing/capsule.h"
 #include "limber/geometry/mesh/testing/shapes.h"
 
@@ -38,8 +39,12 @@ SkinnedModel figure() {
   return model;
 }
 
+// All four limbs are equal but the last.
 HandleQuality qualityOf(const SkinnedModel& model) {
-  return measureHandles(model, kEnds);
+  std::vector<LimbEndOnModel> ends;
+  for (const Vec3& end : kEnds) ends.push_back({end, 1, 0.1});
+  ends.back().reach = 2;
+  return measureHandles(model, ends);
 }
 
 // Vertices of one handle follow another.
@@ -48,11 +53,11 @@ void rename(SkinnedModel& model, Index from, Index to) {
 }
 
 TEST(HandleQuality, EndsAreThoseOfTheLimbs) {
-  const std::vector<Vec3> ends = limbEndsOf(figure().mesh);
+  const std::vector<LimbEndOnModel> ends = limbEndsOf(figure().mesh);
   ASSERT_EQ(ends.size(), 4u);
   for (const Vec3& end : kEnds) {
     const bool isFound =
-        std::any_of(ends.begin(), ends.end(), [&](const Vec3& found) { return (found - end).norm() < 0.2; });
+        std::any_of(ends.begin(), ends.end(), [&](const auto& found) { return (found.position - end).norm() < 0.2; });
     EXPECT_TRUE(isFound) << end.transpose();
   }
   EXPECT_TRUE(limbEndsOf(testing::flatGrid(3, 3)).empty());
@@ -67,6 +72,8 @@ TEST(HandleQuality, AGoodOneHasNoFault) {
   EXPECT_EQ(quality.strayParents, 0u);
   EXPECT_EQ(quality.inside, 1);
   EXPECT_NEAR(quality.overAir, 0, 1e-12);
+  EXPECT_EQ(quality.unequalEnds, 0u);
+  EXPECT_EQ(quality.movedBeside, 0);
 }
 
 TEST(HandleQuality, EachFaultIsSeen) {
@@ -83,6 +90,10 @@ TEST(HandleQuality, EachFaultIsSeen) {
   rename(lost, 2, 0);
   EXPECT_EQ(qualityOf(lost).coveredEnds, 3u);
   EXPECT_EQ(qualityOf(lost).idle, 1u);
+  EXPECT_EQ(qualityOf(lost).unequalEnds, 1u) << "two equal ones have a handle";
+  rename(lost, 1, 0);
+  rename(lost, 3, 0);
+  EXPECT_EQ(qualityOf(lost).unequalEnds, 0u) << "only the last has, and is longer";
 
   SkinnedModel shared = figure();  // two limbs follow one handle
   rename(shared, 2, 1);
@@ -92,6 +103,23 @@ TEST(HandleQuality, EachFaultIsSeen) {
   stray.skeleton.joints[4].parent = 1;
   stray.skeleton.joints[4].rest.translation -= stray.skeleton.joints[1].rest.translation;
   EXPECT_EQ(qualityOf(stray).strayParents, 1u);
+}
+
+TEST(HandleQuality, ALimbThatAnotherDragsIsMovedBeside) {
+  SkinnedModel model = figure();
+  double dragged = 0, whole = 0;
+  const std::vector<double> areas = vertexAreas(model.mesh);
+  for (Index v = 0; v < model.mesh.vertexCount(); ++v) {
+    whole += areas[v];
+    if (model.weights.joints[2 * v] != 2) continue;
+    model.weights.joints[2 * v + 1] = 1;
+    model.weights.weights[2 * v] = 0.8f;
+    model.weights.weights[2 * v + 1] = 0.2f;
+    dragged += areas[v];
+  }
+  EXPECT_NEAR(qualityOf(model).movedBeside, dragged / whole / 4, 1e-9) << "by one handle of four";
+  model.skeleton.joints[2].parent = 1;  // its child comes along
+  EXPECT_EQ(qualityOf(model).movedBeside, 0);
 }
 
 TEST(HandleQuality, WeightBeyondAGapIsOverAir) {
@@ -115,13 +143,16 @@ TEST(HandleQuality, WeightBeyondAGapIsOverAir) {
 }
 
 TEST(HandleQuality, TableHasALineForEachAndOneForAll) {
-  const std::vector<HandleTableRow> rows = {{"stool", {8, 1, 4, 2, 0, 1, 0.1}}, {"horse", {12, 0, 5, 5, 1, 0.5, 0}}};
+  const std::vector<HandleTableRow> rows = {{"stool", {8, 1, 4, 2, 2, 0, 1, 0.1, 0}},
+                                            {"horse", {12, 0, 5, 5, 0, 1, 0.5, 0, 0.02}}};
   const Table table = handleTable(rows);
   ASSERT_EQ(table.rows.size(), 3u);
   EXPECT_EQ(table.rows.back().cells[1].number, 20);
   EXPECT_EQ(table.rows.back().cells[3].number, 1);
   EXPECT_EQ(table.rows.back().cells[5].number, 7);
   EXPECT_NEAR(*table.rows.back().cells[2].number, 70, 1e-9);
+  EXPECT_EQ(table.rows.back().cells[6].number, 2);
+  EXPECT_NEAR(*table.rows.back().cells[9].number, 1, 1e-9);
 }
 
 }  // namespace
