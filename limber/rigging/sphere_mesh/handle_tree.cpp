@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <tuple>
 
 #include "limber/core/disjoint_sets.h"
@@ -46,6 +47,7 @@ class TreeMaker {
 
   void joinNeighbors();
   void joinSides();
+  std::vector<double> rootWeights() const;
   Index findRoot() const;
   HandleTree hangFrom(Index root) const;
   void spread(Index root, std::vector<Index>& order, std::vector<Index>& parents) const;
@@ -148,14 +150,28 @@ void TreeMaker::spread(Index root, std::vector<Index>& order, std::vector<Index>
   }
 }
 
+// How much each handle draws the root towards it: its fraction of the volume, and of all tips of the tree together as
+// much as 0.3 of that. By volume alone a large head or abdomen would be the root of all limbs.
+std::vector<double> TreeMaker::rootWeights() const {
+  constexpr double kTips = 0.3;
+  double whole = 0, tips = 0;
+  const auto isTip = [&](Index h) { return neighbors_[h].size() == 1; };
+  for (Index h = 0; h < neighbors_.size(); ++h) {
+    whole += volume(h);
+    tips += isTip(h) ? 1 : 0;
+  }
+  std::vector<double> weights(neighbors_.size());
+  for (Index h = 0; h < weights.size(); ++h) weights[h] = volume(h) / whole + (isTip(h) ? kTips / tips : 0);
+  return weights;
+}
+
 // The weighted median of the tree, by sums over subtrees and one pass down.
 Index TreeMaker::findRoot() const {
   std::vector<Index> order, parents;
   spread(0, order, parents);
   const auto length = [&](Index a, Index b) { return (level_.spheres[a].center - level_.spheres[b].center).norm(); };
-  std::vector<double> below(order.size()), sum(order.size(), 0);
-  double total = 0;
-  for (Index h = 0; h < below.size(); ++h) total += below[h] = volume(h);
+  std::vector<double> below = rootWeights(), sum(order.size(), 0);
+  const double total = std::accumulate(below.begin(), below.end(), 0.0);
   for (std::size_t i = order.size() - 1; i > 0; --i) {
     const Index h = order[i], parent = parents[h];
     below[parent] += below[h];
