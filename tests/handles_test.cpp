@@ -46,9 +46,10 @@ TEST_P(HandlesOfSamples, ReachTheEndsOfLimbs) {
   for (const HandleTableRow& row : measured({file}, {12, 20})) {
     const HandleQuality& quality = row.quality;
     SCOPED_TRACE(quality.handles);
-    EXPECT_LE(quality.idle, 1u);
-    EXPECT_GE(quality.inside, 0.9);
+    EXPECT_EQ(quality.idle, 0u);
+    EXPECT_EQ(quality.inside, 1);
     EXPECT_LT(quality.overAir, 0.005);
+    EXPECT_LT(quality.movedBeside, 0.01);
     EXPECT_GE(quality.coveredEnds, quality.handles == 20 ? GetParam().coveredEnds : 5);
   }
 }
@@ -71,18 +72,25 @@ TEST(HandlesOfSharedModels, ReachTheEndsOfLimbs) {
                            "cat_low_resolution.obj", "hand_lowres.obj", "fish_low_resolution.obj"}) {
     files.push_back(*data / "meshes" / name);
   }
-  Index ends = 0, covered = 0, stray = 0, idle = 0, handles = 0;
+  Index ends = 0, covered = 0, unequal = 0, stray = 0, idle = 0, handles = 0;
+  double inside = 0;
   for (const HandleTableRow& row : measured(files, {12, 20})) {
     ends += row.quality.ends;
     covered += row.quality.coveredEnds;
+    unequal += row.quality.unequalEnds;
     stray += row.quality.strayParents;
     idle += row.quality.idle;
     handles += row.quality.handles;
-    EXPECT_LT(row.quality.overAir, 0.005) << row.file << ", " << row.quality.handles;
+    inside += row.quality.inside * row.quality.handles;
+    SCOPED_TRACE(row.file);
+    EXPECT_LT(row.quality.overAir, 0.005) << row.quality.handles;
+    EXPECT_LT(row.quality.movedBeside, 0.01) << row.quality.handles;
   }
   EXPECT_GE(covered, 0.7 * ends) << ends;
-  EXPECT_LE(stray, 0.1 * handles);
-  EXPECT_LE(idle, 0.01 * handles);
+  EXPECT_LE(unequal, 0.05 * ends);
+  EXPECT_GE(inside, 0.98 * handles);
+  EXPECT_LE(stray, 0.05 * handles);
+  EXPECT_EQ(idle, 0u);
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 #include "limber/rigging/auto_rigger.h"
 
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "limber/core/text/names.h"
 #include "limber/geometry/mesh/loose_vertices.h"
@@ -16,7 +18,13 @@ namespace {
 template <AutoRigger method>
 AutoRig rigSurface(const TriMesh& mesh, const RigOptions& options, Progress& progress) {
   const std::optional<BareSurface> surface = withoutLooseVertices(mesh);
-  return method(surface ? surface->mesh : mesh, options, progress);
+  if (!surface) return method(mesh, options, progress);
+  AutoRig rig = method(surface->mesh, options, progress);
+  if (rig.jointOf.empty()) return rig;
+  std::vector<Index> jointOf(mesh.vertexCount(), kNoIndex);
+  for (Index v = 0; v < rig.jointOf.size(); ++v) jointOf[surface->source[v]] = rig.jointOf[v];
+  rig.jointOf = std::move(jointOf);
+  return rig;
 }
 
 constexpr RiggerMethod kMethods[] = {

@@ -71,7 +71,10 @@ struct HandleSuggestion {
 };
 
 struct AutoRig {
-  Skeleton skeleton;         // in the space of the mesh
+  Skeleton skeleton;  // in the space of the mesh
+  // #V: the joint whose region of the surface each vertex is of; kNoIndex where no triangle uses it. Empty where the
+  // rigger knows of no regions.
+  std::vector<Index> jointOf;
   bool isAbstained = false;  // it has handles instead of a template (RigOptions::mayAbstain)
   std::vector<HandleSuggestion> suggestions;
   std::vector<TemplateMatch> matches;  // of "auto" all kinds, likeliest first; else the one that was asked for

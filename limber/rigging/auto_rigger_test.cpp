@@ -8,11 +8,15 @@
 namespace limber {
 namespace {
 
-Skeleton tableRig(std::string_view rigger, const TriMesh& mesh) {
+AutoRig tableAutoRig(std::string_view rigger, const TriMesh& mesh) {
   RigOptions options;
   options.handles = 9;
   Progress progress;
-  return findRigger(rigger).rig(mesh, options, progress).skeleton;
+  return findRigger(rigger).rig(mesh, options, progress);
+}
+
+Skeleton tableRig(std::string_view rigger, const TriMesh& mesh) {
+  return tableAutoRig(rigger, mesh).skeleton;
 }
 
 void expectSameJoints(const Skeleton& skeleton, const Skeleton& other) {
@@ -39,6 +43,20 @@ TEST(AutoRigger, LooseVerticesMakeNoDifference) {
       expectSameJoints(tableRig(rigger, loose), expected);
     }
   }
+}
+
+TEST(AutoRigger, LooseVerticesAreOfNoRegion) {
+  TriMesh mesh = testing::blockBiped(1);
+  const std::vector<Index> expected = tableAutoRig("sphere-mesh", mesh).jointOf;
+  mesh.positions.insert(mesh.positions.begin(), Vec3f(0, 0, 7));
+  for (Triangle& t : mesh.triangles) {
+    for (Index& v : t) ++v;
+  }
+  std::vector<Index> jointOf = tableAutoRig("sphere-mesh", mesh).jointOf;
+  ASSERT_EQ(jointOf.size(), mesh.positions.size());
+  EXPECT_EQ(jointOf.front(), kNoIndex);
+  jointOf.erase(jointOf.begin());
+  EXPECT_EQ(jointOf, expected);
 }
 
 TEST(AutoRigger, AFarBitTakesNoHandle) {

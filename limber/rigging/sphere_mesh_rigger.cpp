@@ -7,6 +7,7 @@
 
 #include "limber/rigging/sphere_mesh/handle_count.h"
 #include "limber/rigging/sphere_mesh/handle_tree.h"
+#include "limber/rigging/sphere_mesh/spheres_inside.h"
 
 namespace limber {
 
@@ -112,7 +113,10 @@ Skeleton handleSkeleton(const SphereMesh& spheres, Index count) {
 }
 
 Skeleton handleSkeleton(const SphereMeshLevel& level) {
-  const HandleTree tree = handleTree(level);
+  return handleSkeleton(level, handleTree(level));
+}
+
+Skeleton handleSkeleton(const SphereMeshLevel& level, const HandleTree& tree) {
   const std::vector<Index> numbers = handleNumbers(tree, level);
   const std::size_t width = std::max<std::size_t>(2, fmt::formatted_size("{}", level.spheres.size() - 1));
   Skeleton skeleton;
@@ -142,7 +146,15 @@ AutoRig rigWithSphereMesh(const TriMesh& mesh, const RigOptions& options, Progre
   AutoRig rig;
   progress.step("handles");
   rig.suggestions = suggestHandles(spheres);
-  rig.skeleton = handleSkeleton(spheres, options.handles.value_or(rig.suggestions.front().handles));
+  const Index count = options.handles.value_or(rig.suggestions.front().handles);
+  SphereMeshLevel level = spheres.level(count);
+  rig.jointOf = spheres.vertexHandles(count);
+  moveSpheresInside(level, mesh, rig.jointOf, spheres.mirror());
+  const HandleTree tree = handleTree(level);
+  rig.skeleton = handleSkeleton(level, tree);
+  std::vector<Index> joints(tree.order.size());  // per handle
+  for (Index j = 0; j < joints.size(); ++j) joints[tree.order[j]] = j;
+  for (Index& of : rig.jointOf) of = joints[of];
   return rig;
 }
 

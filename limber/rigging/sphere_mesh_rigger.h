@@ -2,6 +2,7 @@
 #pragma once
 
 #include "limber/rigging/auto_rigger.h"
+#include "limber/rigging/sphere_mesh/handle_tree.h"
 #include "limber/rigging/sphere_mesh/sphere_mesh.h"
 
 namespace limber {
@@ -22,12 +23,14 @@ Index suggestedFrom();
 // O(count log #V).
 Skeleton handleSkeleton(const SphereMesh& spheres, Index count);
 Skeleton handleSkeleton(const SphereMeshLevel& level);
+// tree  handleTree(level)
+Skeleton handleSkeleton(const SphereMeshLevel& level, const HandleTree& tree);
 
 // Throws Error kBadArgument unless 1 <= options.handles <= #V, where a number is asked for.
 void checkHandles(const TriMesh& mesh, const RigOptions& options);
 
 // Builds the sphere mesh, suggests counts, and makes the skeleton of options.handles handles (default: the best
-// suggestion). Throws Error kBadArgument, before it computes, where there are fewer vertices than handles.
+// suggestion); the region of a joint is what its sphere represents. Throws Error kBadArgument, before it computes, where there are fewer vertices than handles.
 AutoRig rigWithSphereMesh(const TriMesh& mesh, const RigOptions& options, Progress& progress);
 
 }  // namespace limber

@@ -75,6 +75,20 @@ TEST(SphereMeshRigger, JointsStandAtTheSpheres) {
   EXPECT_EQ(met.size(), 17u);
 }
 
+TEST(SphereMeshRigger, TheRegionOfAJointIsWhatItsSphereRepresents) {
+  const TriMesh mesh = testing::blockBiped(1);
+  const AutoRig rig = rigged(mesh, 17);
+  const std::vector<Affine> globals = restGlobals(rig.skeleton);
+  Progress progress;
+  const SphereMesh spheres = SphereMesh::build(mesh, progress);
+  const SphereMeshLevel level = spheres.level(17);
+  const std::vector<Index> sphereOf = spheres.vertexHandles(17);
+  ASSERT_EQ(rig.jointOf.size(), sphereOf.size());
+  for (Index v = 0; v < mesh.vertexCount(); ++v) {
+    EXPECT_LT((globals[rig.jointOf[v]].translation() - level.spheres[sphereOf[v]].center).norm(), 1e-9);
+  }
+}
+
 TEST(SphereMeshRigger, NamesTellTheSides) {
   const Skeleton skeleton = rigged(testing::blockBiped(1), 21).skeleton;
   const std::vector<Affine> globals = restGlobals(skeleton);

@@ -157,6 +157,7 @@ Rigged makeRig(const Asset& asset, const FigureToRig& input, const AutoRigOption
   const PreparedMesh& prepared = figure.prepared;
   Rigged result;
   std::vector<Bone> bones;
+  WeightOptions weights = options.weights;
   Accessories accessories;
   progress.stage("rig");
   if (options.existingRig == ExistingRig::kKeepSkeleton) {
@@ -179,9 +180,11 @@ Rigged makeRig(const Asset& asset, const FigureToRig& input, const AutoRigOption
       frame = prepared.frame;
       AutoRig handles = findRigger(AutoRigOptions().rigger).rig(prepared.mesh, options.rig, progress);
       rig.skeleton = std::move(handles.skeleton);
+      rig.jointOf = std::move(handles.jointOf);
       rig.suggestions = std::move(handles.suggestions);
     }
     bones = bonesOf(rig.skeleton);
+    weights.jointOf = std::move(rig.jointOf);
     if (!accessories.empty()) moveBones(frame, prepared.frame, bones);
     report.isAbstained = rig.isAbstained;
     report.rigger = rig.isAbstained ? AutoRigOptions().rigger : options.rigger;
@@ -201,7 +204,7 @@ Rigged makeRig(const Asset& asset, const FigureToRig& input, const AutoRigOption
   progress.stage("skin");
   WeightResult skin = result.made && result.made->jointCount() == 1
                           ? boundToOneJoint(prepared.mesh)
-                          : findWeightMethod(options.skinning).compute(prepared.mesh, bones, options.weights, progress);
+                          : findWeightMethod(options.skinning).compute(prepared.mesh, bones, weights, progress);
   report.warnings.append(skin.warnings);
   bindLeftOut(figure, skin.weights);
   const std::vector<HungAccessory> hung = accessories.empty()

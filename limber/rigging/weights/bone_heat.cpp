@@ -35,13 +35,13 @@ struct HeatProblem {
 };
 
 HeatProblem setUp(const BoneHeatOptions& heat, const TriMesh& mesh, std::span<const Bone> bones,
-                  const std::vector<Index>& piece) {
+                  const std::vector<Index>& piece, std::span<const Index> jointOf) {
   HeatProblem problem;
   const auto makeLaplacian = [&] { return robustLaplacian(mesh, piece); };
   parallelInvoke([&] { problem.solver = std::make_unique<HeatSolver>(makeLaplacian, heat.directBelow); },
                  [&] {
                    const Bvh bvh(mesh);
-                   problem.sources = findHeatSources(mesh, bones, &bvh, heat.sources);
+                   problem.sources = findHeatSources(mesh, bones, &bvh, heat.sources, jointOf);
                  });
   if (!anySource(problem.sources)) {
     problem.sawBone = false;
@@ -91,7 +91,7 @@ WeightResult boneHeatWeights(const TriMesh& mesh, std::span<const Bone> bones, c
   if (std::optional<WeightResult> parts = jointedPieceWeights(mesh, piece, pieceCount, bones, options, progress)) {
     return std::move(*parts);
   }
-  HeatProblem problem = setUp({}, mesh, bones, piece);
+  HeatProblem problem = setUp({}, mesh, bones, piece, options.jointOf);
   if (!problem.sawBone) {
     result.warnings.add("no-bone-in-sight", "no bone is in sight of any vertex, so each vertex took the nearest bone");
   }
@@ -123,7 +123,7 @@ WeightResult boneHeatWeights(const TriMesh& mesh, std::span<const Bone> bones, c
 Eigen::MatrixXd fullBoneHeat(const BoneHeatOptions& heat, const TriMesh& mesh, std::span<const Bone> bones) {
   checkWeightArguments(mesh, bones, {});
   const std::vector<Index> piece = vertexComponents(mesh);
-  HeatProblem problem = setUp(heat, mesh, bones, piece);
+  HeatProblem problem = setUp(heat, mesh, bones, piece, {});
   problem.solver->factorize(problem.sources);
   Index jointCount = 0;
   for (const Bone& bone : bones) jointCount = std::max(jointCount, bone.joint + 1);

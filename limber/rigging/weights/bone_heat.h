@@ -20,6 +20,9 @@ struct BoneHeatOptions {
 // Bone heat (Baran, Popović: Automatic Rigging and Animation of 3D Characters, 2007) on the Laplacian of
 // robustLaplacian(), so that every mesh with a triangle gets weights in [0, 1] that sum to 1.
 //
+// Heat enters each vertex from its nearest bones in sight, or from the joint whose region it is of
+// (WeightOptions::jointOf).
+//
 // Pieces from which no bone is in sight take the weights of the nearest surface point of a piece that does; the result
 // lists their vertices. Where no vertex at all sees a bone, all bones count as in sight (`no-bone-in-sight`).
 //

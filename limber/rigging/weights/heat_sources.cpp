@@ -54,17 +54,20 @@ class BoneFinder {
   }
 
   // Appends the joints that hold the vertex and returns their pull. The vertex is one of those of the last approach();
-  // `normal` is a unit vector, or zero where it does not count.
-  double find(const Vec3& vertex, const Vec3& normal, std::vector<Index>& joints) {
+  // `normal` is a unit vector, or zero where it does not count; `region` is the joint whose region the vertex is of,
+  // kNoIndex where that is not known.
+  double find(const Vec3& vertex, const Vec3& normal, Index region, std::vector<Index>& joints) {
     normal_ = normal;
+    region_ = region;
     nearBones_.clear();
     double nearest = std::numeric_limits<double>::infinity(), tolerance = 0;
     for (const auto& [least, i] : order_) {
       if (least > nearest + tolerance) break;
       const BoneDistance d = distance(vertex, i);
-      nearBones_.push_back({d.surface, i});
-      if (d.surface >= nearest) continue;
-      nearest = d.surface;
+      const double surface = d.surface + (isOfOtherRegion(i) ? d.axis : 0);
+      nearBones_.push_back({surface, i});
+      if (surface >= nearest) continue;
+      nearest = surface;
       tolerance = options_.tieTolerance * d.axis;
     }
     return pullUpTo(vertex, nearest + tolerance, joints);
@@ -87,6 +90,8 @@ class BoneFinder {
     return {farther * surface, farther * axis, vertex + arm * (surface / axis)};
   }
 
+  bool isOfOtherRegion(std::size_t i) const { return region_ != kNoIndex && region_ != bones_[i].joint; }
+
   // 1 where the vertex faces straight away from the bone, near 0 where it faces the bone.
   double facing(const Vec3& arm, double length) const {
     if (normal_.isZero(0)) return 1;
@@ -100,7 +105,8 @@ class BoneFinder {
     for (const auto& [surface, i] : nearBones_) {
       if (surface > most) continue;
       const BoneDistance d = distance(vertex, i);
-      if (bvh_ && bvh_->segmentBlocked(vertex, d.target, kSightMargin)) continue;
+      const bool mayBeHidden = bvh_ && bones_[i].joint != region_;
+      if (mayBeHidden && bvh_->segmentBlocked(vertex, d.target, kSightMargin)) continue;
       joints.push_back(bones_[i].joint);
       nearestAxis = std::min(nearestAxis, d.axis);
     }
@@ -119,12 +125,13 @@ class BoneFinder {
   std::vector<std::pair<double, std::size_t>> order_;      // least distance from the group, bone; ascending
   std::vector<std::pair<double, std::size_t>> nearBones_;  // distance from the vertex in hand, bone
   Vec3 normal_ = Vec3::Zero();                             // of the vertex in hand
+  Index region_ = kNoIndex;                                // likewise
 };
 
 }  // namespace
 
 HeatSources findHeatSources(const TriMesh& mesh, std::span<const Bone> bones, const Bvh* bvh,
-                            const HeatSourceOptions& options) {
+                            const HeatSourceOptions& options, std::span<const Index> jointOf) {
   const std::size_t vertexCount = mesh.positions.size();
   const std::vector<Vec3> normals =
       options.facing ? outwardNormals(mesh) : std::vector<Vec3>(vertexCount, Vec3::Zero());
@@ -138,7 +145,8 @@ HeatSources findHeatSources(const TriMesh& mesh, std::span<const Bone> bones, co
       for (std::size_t v = range * kSourceRange; v < std::min(vertexCount, (range + 1) * kSourceRange); ++v) {
         if (v % kGroup == 0) finder.approach({mesh.positions.data() + v, std::min(kGroup, vertexCount - v)});
         const std::size_t before = found[range].size();
-        result.pull[v] = finder.find(mesh.positions[v].cast<double>(), normals[v], found[range]);
+        const Index region = jointOf.empty() ? kNoIndex : jointOf[v];
+        result.pull[v] = finder.find(mesh.positions[v].cast<double>(), normals[v], region, found[range]);
         result.first[v + 1] = static_cast<Index>(found[range].size() - before);
       }
     }

@@ -32,9 +32,14 @@ struct HeatSources {
 // The nearest bone is the one whose surface (the points at its radius) is nearest. It is in sight when the segment from
 // the vertex to that surface passes through no triangle.
 //
-// bvh    over the whole mesh; null: every bone is in sight
+// Where it is known which joint's region of the surface a vertex is of, the bones of that joint are in sight of it, and
+// the surfaces of other bones count as farther away by the distance to their axes: a leg does not hold the other one,
+// and a joint keeps a region that is small or far from it.
+//
+// bvh      over the whole mesh; null: every bone is in sight
+// jointOf  #V; empty: not known
 // Cost: O(#V #B) for distances and O(#V log #F) for sight, in parallel.
 HeatSources findHeatSources(const TriMesh& mesh, std::span<const Bone> bones, const Bvh* bvh,
-                            const HeatSourceOptions& options);
+                            const HeatSourceOptions& options, std::span<const Index> jointOf = {});
 
 }  // namespace limber

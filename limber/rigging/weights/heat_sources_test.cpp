@@ -89,6 +89,23 @@ TEST(HeatSources, PullIsBoundedOnTheBoneItself) {
   EXPECT_NEAR(findHeatSources(mesh, bones, nullptr, options).pull[0], 1e4, 1e-6);
 }
 
+TEST(HeatSources, TheJointOfTheRegionIsInSightAndComesBeforeWhatIsHalfAsFar) {
+  const TriMesh wall{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0.5, -1}, {3, 0.5, -1}, {1, 0.5, 3}},
+                     {{0, 1, 2}, {3, 4, 5}}};  // the second hides what is above it from the first two vertices
+  const Bvh bvh(wall);
+  const Bone bones[] = {{0, {0, 1, 0.2}, {0, 1, 0.2}, 0}, {1, {0, -0.8, 0.2}, {0, -0.8, 0.2}, 0}};
+  const auto jointAt = [&](Index region) {
+    const std::vector<Index> jointOf(wall.positions.size(), region);
+    const HeatSources sources = findHeatSources(wall, bones, &bvh, plain(), jointOf);
+    return sources.jointsOf(0).empty() ? kNoIndex : sources.jointsOf(0)[0];
+  };
+  EXPECT_EQ(jointAt(0), 0u) << "hidden, but of its region";
+  EXPECT_EQ(jointAt(1), 1u);
+  const Bone near[] = {bones[0], {1, {0, -0.4, 0.2}, {0, -0.4, 0.2}, 0}};
+  const std::vector<Index> jointOf(wall.positions.size(), 0);
+  EXPECT_EQ(findHeatSources(wall, near, &bvh, plain(), jointOf).jointsOf(0)[0], 1u) << "less than half as far";
+}
+
 TEST(HeatSources, ABoneInFrontOfTheSurfaceCountsAsFarther) {
   const TriMesh ball = testing::moved(testing::icosphere(2), Vec3f::Constant(0.5f), Vec3f::Zero());
   const Bone bones[] = {{0, {0, 0.62, 0}, {0, 0.7, 0}, 0}, {1, {0, 0.2, 0}, {0, 0.1, 0}, 0}};

@@ -39,7 +39,12 @@ template <WeightFunction method>
 WeightResult computed(const TriMesh& mesh, std::span<const Bone> bones, const WeightOptions& options,
                       Progress& progress) {
   if (const std::optional<BareSurface> surface = withoutLooseVertices(mesh)) {
-    return withLooseVertices(computed<method>(surface->mesh, bones, options, progress), *surface, mesh);
+    WeightOptions ofSurface = options;
+    if (!options.jointOf.empty()) {
+      ofSurface.jointOf.clear();
+      for (const Index v : surface->source) ofSurface.jointOf.push_back(options.jointOf[v]);
+    }
+    return withLooseVertices(computed<method>(surface->mesh, bones, ofSurface, progress), *surface, mesh);
   }
   WeightResult result = method(mesh, bones, options, progress);
   if (options.pieces != PieceMode::kSoft) holdSpecks(mesh, result.weights);

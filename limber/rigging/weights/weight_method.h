@@ -31,6 +31,9 @@ PieceMode findPieceMode(std::string_view name);
 struct WeightOptions {
   Index maxInfluences = 4;  // 1 to 8, kept per vertex
   PieceMode pieces = PieceMode::kAuto;
+  // #V: the joint whose region each vertex is of, where the rigger knows (AutoRig); empty: the nearest bone in sight.
+  // Bone heat alone uses it.
+  std::vector<Index> jointOf = {};
 };
 
 struct WeightResult {

@@ -50,6 +50,9 @@ void checkWeightArguments(const TriMesh& mesh, std::span<const Bone> bones, cons
   if (options.maxInfluences < 1 || options.maxInfluences > kMaxSlots) {
     throw Error(ErrorCode::kBadArgument, "a vertex can keep 1 to 8 influences", {}, "choose `max-influences` 1 to 8");
   }
+  if (!options.jointOf.empty() && options.jointOf.size() != mesh.positions.size()) {
+    throw Error(ErrorCode::kBadArgument, "not every vertex has a joint");
+  }
 }
 
 double distanceToBone(const Bone& bone, const Vec3& point) {
