@@ -10,10 +10,11 @@ namespace limber {
 namespace {
 
 // All by the judge on half of the shared motions.
-// Weights against that of bones: the pelvis rises and sinks freely, so that legs keep their bend (0 to 0.1), and hardly
-// goes aside (1 to 100). A foot has no position of its own (0 to 0.1): its leg's bones tell where it is to be. A
-// planted one has a weight of its squared speed along the ground (hip heights a second; 1e3 to 1e6), and keeps its
-// height (1e3 to 1e6). Bounds are found in 3 to 20 rounds (set by hand).
+// Weights against that of bones: a pelvis that feet carry rises and sinks freely, so that legs keep their bend (0 to
+// 0.1); it hardly goes aside, nor does one in flight rise or sink, which nothing would hold back (1 to 100). A foot has
+// no position of its own (0 to 0.1): its leg's bones tell where it is to be. A planted one has a weight of its squared
+// speed along the ground (hip heights a second; 1e3 to 1e6), and keeps its height (1e3 to 1e6). Bounds are found in 3
+// to 20 rounds (set by hand).
 constexpr ChangeWeights kWeights = {
     .pelvisLevel = 10, .pelvisUp = 0.02, .feet = 0.02, .bones = 1, .hold = 1e5, .rest = 3e4, .rounds = 8};
 // Hip heights; 0.05 to 0.3; over which it is seen how bones follow a foot, without the kink of nearly straight legs.

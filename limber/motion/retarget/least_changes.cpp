@@ -107,8 +107,22 @@ void LeastChanges::addOwnChanges(std::size_t frame) {
   const std::size_t first = layout_.pelvis(frame), feet = layout_.foot(frame, 0), shoulders = layout_.shoulders(frame);
   for (std::size_t i = first; i < layout_.pelvis(frame + 1); ++i) {
     const bool isFoot = i >= feet && i < shoulders, isUp = i == first + 1 || i >= shoulders;
-    closeness_.add(std::array{Term{i, 1}}, 0, isFoot ? weights_.feet : isUp ? weights_.pelvisUp : weights_.pelvisLevel);
+    const double support = supportOf(frame, i >= shoulders);
+    const double up = weights_.pelvisLevel + support * (weights_.pelvisUp - weights_.pelvisLevel);
+    closeness_.add(std::array{Term{i, 1}}, 0, isFoot ? weights_.feet : isUp ? up : weights_.pelvisLevel);
   }
+}
+
+// How firmly feet carry the hips or the shoulders, 0 to 1: those that are held, or whose height counts for more.
+double LeastChanges::supportOf(std::size_t frame, bool shoulders) const {
+  double support = 0;
+  for (std::size_t leg = 0; leg < layout_.legs(); ++leg) {
+    const FootFrame& now = foot(frame, leg);
+    if (layout_.isTilted(leg) != shoulders) continue;
+    const double rest = weights_.rest * now.rest;
+    support = std::max({support, now.hold, rest / (rest + weights_.pelvisLevel)});
+  }
+  return support;
 }
 
 void LeastChanges::addFoot(std::size_t frame, std::size_t leg) {

@@ -57,7 +57,7 @@ struct FootFrame {
 
 // What counts how much, against each other: changes in hip heights, bones in their lengths, each squared.
 struct ChangeWeights {
-  double pelvisLevel = 1, pelvisUp = 1;  // changes of the pelvis, and the rise of shoulders
+  double pelvisLevel = 1, pelvisUp = 1;  // changes of the pelvis, and the rise of shoulders; up where feet carry them
   double feet = 1;                       // changes of feet
   double bones = 0;                      // changes of the directions of legs' bones
   double hold = 0, rest = 0;             // FootFrame's
@@ -107,6 +107,7 @@ class LeastChanges {
   bool isPinned(std::size_t frame) const;
   void countThirds();
   void addOwnChanges(std::size_t frame);
+  double supportOf(std::size_t frame, bool shoulders) const;
   void addFoot(std::size_t frame, std::size_t leg);
   void holdPlanted(double weight);
   void addPelvisJerk(const ChangedMotion& now);

@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
 #include "limber/character/matching/testing/test_motion.h"
 #include "limber/motion/retarget/retarget_clip.h"
 
@@ -10,7 +15,48 @@ namespace {
 
 using limber::testing::oddlyBuilt;
 using limber::testing::slideDistance;
+using limber::testing::turn;
 using limber::testing::walk;
+
+Skeleton withoutToes(const Skeleton& person) {
+  Skeleton toeless;
+  std::vector<Index> kept(person.joints.size());
+  for (Index j = 0; j < person.jointCount(); ++j) {
+    if (person.joints[j].name.ends_with("Toes")) continue;
+    kept[j] = toeless.jointCount();
+    toeless.joints.push_back(person.joints[j]);
+    if (toeless.joints.back().parent) toeless.joints.back().parent = kept[*toeless.joints.back().parent];
+  }
+  return toeless;
+}
+
+// Crouches, jumps and crouches again, in a second and a half.
+PoseSequence jump(const Skeleton& person) {
+  PoseSequence sequence;
+  sequence.frameSeconds = 1 / 120.0;
+  const auto joint = [&](const std::string& name) { return person.find(name).value(); };
+  const Index foot = joint("leftFoot"), hips = joint("hips");
+  const double standing = restGlobals(person)[foot].translation().y(), leaves = 0.6, lands = 1.1, gravity = 9.8;
+  for (double t = 0; t < 1.7; t += sequence.frameSeconds) {
+    Pose pose = restPose(person);
+    // The knees are most bent a moment before and after the flight, and the heels come up as they straighten.
+    const auto near = [&](double time, double width) { return std::exp(-std::pow((t - time) / width, 2)); };
+    const double knee = 10 + 80 * (near(leaves - 0.15, 0.12) + near(lands + 0.12, 0.12));
+    const double heel = 0.05 * near(leaves - 0.02, 0.05) + 0.02 * near(lands + 0.05, 0.04);
+    for (const std::string side : {"left", "right"}) {
+      pose.locals[joint(side + "UpperLeg")].rotation = turn(-Vec3::UnitX(), knee / 2);
+      pose.locals[joint(side + "LowerLeg")].rotation = turn(Vec3::UnitX(), knee);
+      pose.locals[joint(side + "Foot")].rotation = turn(-Vec3::UnitX(), knee / 2);
+    }
+    const double flight = t > leaves && t < lands ? gravity / 2 * (t - leaves) * (lands - t) : 0;
+    const double height = standing + heel + flight;
+    const Vec3 ankle = poseGlobals(person, pose)[foot].translation();
+    pose.locals[hips].translation +=
+        Vec3(0, height - ankle.y(), -ankle.z() + 0.5 * std::clamp(t - leaves, 0.0, lands - leaves));
+    sequence.poses.push_back(std::move(pose));
+  }
+  return sequence;
+}
 
 class Spacetime : public ::testing::Test {
  protected:
@@ -54,6 +100,26 @@ TEST_F(Spacetime, FeetStayAboveTheGround) {
     }
   }
   EXPECT_GT(deepest, 0.005) << "joint angles alone would do";
+}
+
+// Feet without toes let go while the body still rises on them, and come down bent.
+TEST_F(Spacetime, AJumpIsAsHighAsItsJointAnglesHaveIt) {
+  const Skeleton toeless = withoutToes(person);
+  const PoseSequence moves = jump(toeless);
+  const RetargetSetup setup(toeless, odd, matchSkeletons(toeless, odd), {}, &moves);
+  const auto heights = [&](const char* method) {
+    std::vector<double> lower;
+    for (const Pose& pose : retargetFrames(findRetargetMethod(method), setup, moves).poses) {
+      const std::vector<Affine> globals = poseGlobals(odd, pose);
+      const auto height = [&](const char* name) { return globals[odd.find(name).value()].translation().y(); };
+      lower.push_back(std::min(height("leftFoot"), height("rightFoot")));
+    }
+    return lower;
+  };
+  const std::vector<double> angles = heights("aligned"), result = heights("spacetime");
+  const double standing = result.front(), highest = *std::max_element(angles.begin(), angles.end()) - standing;
+  ASSERT_GT(highest, 0.2);
+  for (std::size_t f = 0; f < angles.size(); ++f) EXPECT_NEAR(result[f], angles[f], 0.1 * highest) << f;
 }
 
 TEST_F(Spacetime, NothingChangesWithoutConstraints) {
