@@ -96,6 +96,11 @@ CharacterClips retargetedClips(const Character& character, const Motion& given, 
   RetargetOptions retarget = options.retarget;
   retarget.characterOnGround = !isSkeletonAlone(asset);
   if (character.hasRig()) retarget.skin = bodySkinOf(character, warnings);
+  if (isSizedByTrunk(motion.skeleton, target, map, retarget.skin.get())) {
+    warnings.add("legs-without-length",
+                 "legs of one joint each do not tell how long they are: the trunks say how far the character goes",
+                 motion.name);
+  }
   CharacterClips result;
   for (std::size_t c = 0; c < motion.clips.size(); ++c) {
     const Clip& clip = motion.clips[c];

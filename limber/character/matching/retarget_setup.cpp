@@ -8,6 +8,7 @@
 
 #include "limber/character/anatomy/anatomy.h"
 #include "limber/core/known_error.h"
+#include "limber/skeleton/chain.h"
 
 namespace limber {
 
@@ -32,11 +33,61 @@ double lowest(const std::vector<Index>& joints, const std::vector<Vec3>& positio
   return y;
 }
 
-// Feet where both have them, else every joint.
-std::vector<Index> groundJoints(const SkeletonMap& map, MapSide side) {
+// A person's legs on that side, with all that is attached to them, matched or not.
+std::vector<Index> legJoints(const SkeletonMap& map, MapSide side, const Skeleton& skeleton) {
+  std::vector<Index> joints;
+  for (const Side each : kSides) {
+    const std::optional<Index> upper =
+        map.isBiped() ? firstOfPart(map, side, body_part::leg(each, Segment::kUpper)) : std::nullopt;
+    for (Index j = 0; upper && j < skeleton.jointCount(); ++j) {
+      if (isAncestorOrSelf(skeleton, *upper, j)) joints.push_back(j);
+    }
+  }
+  return joints;
+}
+
+// Feet where both have them. Else a person's legs: of one joint more or less, they end on the ground all the same.
+std::vector<Index> groundJoints(const SkeletonMap& map, MapSide side, const Skeleton& skeleton) {
   std::vector<Index> joints = soleJoints(map, side);
+  if (joints.empty()) joints = legJoints(map, side, skeleton);
   return joints.empty() ? matchedJoints(map, side) : joints;
 }
+
+// Legs of one joint each, which is at the hip: nothing in the skeleton says where they end.
+bool endAtHips(const SkeletonMap& map, MapSide side, const Skeleton& skeleton) {
+  const std::vector<Index> legs = legJoints(map, side, skeleton);
+  const auto isHip = [&](Index joint) {
+    const std::optional<Index>& parent = skeleton.joints[joint].parent;
+    return !parent || std::find(legs.begin(), legs.end(), *parent) == legs.end();
+  };
+  return !legs.empty() && std::all_of(legs.begin(), legs.end(), isHip);
+}
+
+// How far the skin of joints goes below the lowest of them.
+double skinBelow(const std::vector<Index>& joints, const NeutralPose& pose, const BodySkin* skin) {
+  double below = 0;
+  for (std::size_t i = 0; skin && i < skin->joints.size(); ++i) {
+    const Index joint = skin->joints[i];
+    if (std::find(joints.begin(), joints.end(), joint) == joints.end()) continue;
+    const double height = pose.positions[joint].y() + (pose.rotations[joint] * skin->positions[i]).y();
+    below = std::max(below, lowest(joints, pose.positions) - height);
+  }
+  return below;
+}
+
+// From the pelvis to the head.
+double trunkLength(const SkeletonMap& map, MapSide side, const NeutralPose& pose) {
+  const std::optional<Index> head = firstOfPart(map, side, body_part::kHead);
+  return head ? (pose.positions[*head] - pelvisOf(map, side, pose.positions)).norm() : 0;
+}
+
+// What of a body is lowest when it stands, and how far below that the ground is: 0 but for legs that end at the hips.
+struct Footing {
+  std::vector<Index> joints;
+  double below = 0;
+
+  double ground(const std::vector<Vec3>& positions) const { return lowest(joints, positions) - below; }
+};
 
 // Heights of the lowest foot joint over a motion, in all frames and while it is still.
 struct LowestHeights {
@@ -101,8 +152,26 @@ double legLength(const SkeletonMap& map, MapSide side, const NeutralPose& pose) 
   return length;
 }
 
-double hipHeight(const SkeletonMap& map, MapSide side, const NeutralPose& pose) {
-  return pelvisOf(map, side, pose.positions).y() - lowest(groundJoints(map, side), pose.positions);
+double hipHeight(const SkeletonMap& map, MapSide side, const NeutralPose& pose, const Footing& footing) {
+  return pelvisOf(map, side, pose.positions).y() - footing.ground(pose.positions);
+}
+
+// Legs that end at the hips: by the skin, else as long for the trunk as the other body's, or as the trunk itself.
+void findLegEnds(const RetargetSetup& setup, Footing& source, Footing& target) {
+  const bool sourceEnds = !endAtHips(setup.map, MapSide::kSource, *setup.source),
+             targetJointsEnd = !endAtHips(setup.map, MapSide::kTarget, *setup.target);
+  if (!targetJointsEnd) target.below = skinBelow(target.joints, setup.targetNeutral, setup.options.skin.get());
+  const bool targetEnds = targetJointsEnd || target.below > 0;
+  const double sourceTrunk = trunkLength(setup.map, MapSide::kSource, setup.sourceNeutral),
+               targetTrunk = trunkLength(setup.map, MapSide::kTarget, setup.targetNeutral);
+  double legs = 1;  // trunks
+  if (sourceEnds) {
+    legs = hipHeight(setup.map, MapSide::kSource, setup.sourceNeutral, source) / sourceTrunk;
+  } else if (targetEnds) {
+    legs = hipHeight(setup.map, MapSide::kTarget, setup.targetNeutral, target) / targetTrunk;
+  }
+  if (!sourceEnds) source.below = legs * sourceTrunk;
+  if (!targetEnds) target.below = legs * targetTrunk;
 }
 
 // Mean height, over the lowest matched joint, of the joints that legs begin at.
@@ -165,6 +234,14 @@ void checkSize(double size, const char* whose, const SkeletonMap& map) {
 
 }  // namespace
 
+bool isSizedByTrunk(const Skeleton& source, const Skeleton& target, const SkeletonMap& map, const BodySkin* skin) {
+  const std::vector<Index> legs = legJoints(map, MapSide::kTarget, target);
+  const bool hasSkin = skin && std::any_of(skin->joints.begin(), skin->joints.end(), [&](Index joint) {
+                         return std::find(legs.begin(), legs.end(), joint) != legs.end();
+                       });
+  return endAtHips(map, MapSide::kSource, source) || (endAtHips(map, MapSide::kTarget, target) && !hasSkin);
+}
+
 RetargetSetup::RetargetSetup(const Skeleton& from, const Skeleton& to, SkeletonMap matches,
                              const RetargetOptions& asked, const PoseSequence* motion)
     : source(&from),
@@ -185,9 +262,12 @@ RetargetSetup::RetargetSetup(const Skeleton& from, const Skeleton& to, SkeletonM
                               : neutralPose(to, targetRest, map, MapSide::kTarget, axesOf(to, targetReading, person))),
       sourceKinematics(from, sourceNeutral.toBody),
       targetKinematics(to, targetNeutral.toBody) {
+  Footing sourceFooting{groundJoints(map, MapSide::kSource, from)},
+      targetFooting{groundJoints(map, MapSide::kTarget, to)};
   if (person) {
-    sourceHipHeight = hipHeight(map, MapSide::kSource, sourceNeutral);
-    targetHipHeight = hipHeight(map, MapSide::kTarget, targetNeutral);
+    findLegEnds(*this, sourceFooting, targetFooting);
+    sourceHipHeight = hipHeight(map, MapSide::kSource, sourceNeutral, sourceFooting);
+    targetHipHeight = hipHeight(map, MapSide::kTarget, targetNeutral, targetFooting);
   } else {
     const BodySize one = bodySize(map, MapSide::kSource, sourceNeutral),
                    other = bodySize(map, MapSide::kTarget, targetNeutral);
@@ -211,18 +291,18 @@ RetargetSetup::RetargetSetup(const Skeleton& from, const Skeleton& to, SkeletonM
   }
   if (options.rootScale == RootScale::kNone) scale = 1;
 
-  const std::vector<Index> soles = groundJoints(map, MapSide::kSource);
-  sourceLowest = lowest(soles, sourceNeutral.positions);
-  targetLowest = lowest(groundJoints(map, MapSide::kTarget), targetNeutral.positions);
-  const double restGround = lowest(soles, sourceNeutral.restPositions);
+  sourceLowest = sourceFooting.ground(sourceNeutral.positions);
+  targetLowest = targetFooting.ground(targetNeutral.positions);
+  const double restGround = sourceFooting.ground(sourceNeutral.restPositions);
   sourceGround = options.sourceGround.value_or(restGround);
-  if (!options.sourceGround && motion && !motion->poses.empty()) {
-    const LowestHeights heights = lowestHeights(sourceKinematics, sourceNeutral, soles, sourceHipHeight, *motion);
+  if (!options.sourceGround && motion && !motion->poses.empty() && sourceFooting.below == 0) {
+    const LowestHeights heights =
+        lowestHeights(sourceKinematics, sourceNeutral, sourceFooting.joints, sourceHipHeight, *motion);
     sourceGround = measuredGround(heights, restGround, sourceHipHeight);
   }
   // If the skeletons' rest poses are about the origin, a person is put at the source's height, and any other body,
   // whose displacement is from rest, as far from there as the source.
-  targetGround = lowest(groundJoints(map, MapSide::kTarget), targetNeutral.restPositions);
+  targetGround = targetFooting.ground(targetNeutral.restPositions);
   // What rests in the air flies: its feet have no ground to keep to.
   const bool flies =
       targetGround >= kGroundReading.flies * targetHipHeight && rootFollows != RootFollows::kHindquarters;
@@ -237,13 +317,13 @@ RetargetSetup::RetargetSetup(const Skeleton& from, const Skeleton& to, SkeletonM
   sameBody = isSameBody();
   // Two that rest at one height are in one space: where the recording's ground is not that of its rest pose, neither is
   // the target's.
-  const auto restsAt = [&](const Skeleton& skeleton, MapSide side, const BodyKinematics& kinematics) {
+  const auto restsAt = [](const Skeleton& skeleton, const Footing& footing, const BodyKinematics& kinematics) {
     BodyFrame frame;
     kinematics.globals(restPose(skeleton), frame);
-    return lowest(groundJoints(map, side), frame.positions);
+    return footing.ground(frame.positions);
   };
   const double apart =
-      restsAt(to, MapSide::kTarget, targetKinematics) - scale * restsAt(from, MapSide::kSource, sourceKinematics);
+      restsAt(to, targetFooting, targetKinematics) - scale * restsAt(from, sourceFooting, sourceKinematics);
   const bool oneSpace = std::abs(apart) < kGroundReading.sameGround * targetHipHeight;
   if (person && sameBody && oneSpace && !options.sourceGround) targetGround = scale * sourceGround;
 }

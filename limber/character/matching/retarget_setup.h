@@ -58,6 +58,10 @@ enum class RootFollows {
   kEachJoint,     // of what is matched joint by joint: all may move
 };
 
+// Whether nothing says how long a person's legs are, on one side or the other: they are one joint each, without a skin.
+// Then legs are taken to be in proportion to trunks.
+bool isSizedByTrunk(const Skeleton& source, const Skeleton& target, const SkeletonMap& map, const BodySkin* skin);
+
 // Immutable once made; the skeletons must outlive it, and have no negative scales (plain_skeleton.h). `motion`, if
 // given, is the input of the retarget: it gives the ground, and a rest pose for the source where its own is not
 // upright.

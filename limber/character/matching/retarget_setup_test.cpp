@@ -8,14 +8,18 @@
 namespace limber {
 namespace {
 
-// What is said of a map of these parts alone; nothing where it serves.
-std::string refusal(const Skeleton& source, const Skeleton& target, const std::vector<std::string>& parts) {
+SkeletonMap mapOf(const Skeleton& source, const Skeleton& target, const std::vector<std::string>& parts) {
   SkeletonMap map;
   for (const std::string& part : parts) {
     map.matches.push_back({bodyPartNamed(part).value(), {source.find(part).value()}, {target.find(part).value()}});
   }
+  return map;
+}
+
+// What is said of a map of these parts alone; nothing where it serves.
+std::string refusal(const Skeleton& source, const Skeleton& target, const std::vector<std::string>& parts) {
   try {
-    const RetargetSetup setup(source, target, map, {});
+    const RetargetSetup setup(source, target, mapOf(source, target, parts), {});
   } catch (const Error& error) {
     return error.what();
   }
@@ -33,6 +37,39 @@ TEST(RetargetSetup, AMapThatTellsNoSizeSaysWhatIsMissing) {
   EXPECT_EQ(refusal(person, folded, {"hips", "head"}),
             "the matched joints do not tell how large the character's body is (match parts that lie further apart, "
             "such as hips, head and feet)");
+}
+
+// A knee of the one body is no foot of the other.
+TEST(RetargetSetup, LegsOfOneJointAreAsLongAsTheyAre) {
+  const Skeleton person = practiceHumanoid(), kneeless = testing::without(person, {"LowerLeg", "Toes"}),
+                 small = testing::scaled(kneeless, 0.5);
+  const auto scaleOf = [](const Skeleton& source, const Skeleton& target) {
+    const SkeletonMap map = matchSkeletons(source, target);
+    EXPECT_FALSE(isSizedByTrunk(source, target, map, nullptr));
+    return RetargetSetup(source, target, map, {}).scale;
+  };
+  EXPECT_NEAR(scaleOf(person, kneeless), 1, 0.1) << "but for the toes";
+  EXPECT_NEAR(scaleOf(person, small), 0.5, 0.05);
+  EXPECT_NEAR(scaleOf(small, person), 2, 0.2);
+}
+
+TEST(RetargetSetup, LegsThatEndAtTheHipsAreAsLongAsTheirSkinOrInProportion) {
+  const Skeleton person = practiceHumanoid(), legless = testing::without(person, {"LowerLeg", "Foot", "Toes"}),
+                 small = testing::scaled(legless, 0.5);
+  const std::vector<std::string> parts = {"hips", "head", "leftUpperLeg", "rightUpperLeg"};
+  const SkeletonMap map = mapOf(person, small, parts), back = mapOf(small, person, parts);
+  EXPECT_TRUE(isSizedByTrunk(person, small, map, nullptr));
+  EXPECT_TRUE(isSizedByTrunk(small, person, back, nullptr));
+  EXPECT_NEAR(RetargetSetup(person, small, map, {}).scale, 0.5, 1e-6);
+  EXPECT_NEAR(RetargetSetup(small, person, back, {}).scale, 2, 1e-6);
+  EXPECT_NEAR(RetargetSetup(legless, small, mapOf(legless, small, parts), {}).scale, 0.5, 1e-6);
+  // Legs twice as long as in proportion.
+  const std::vector<Vec3> rest = restPositions(person);
+  const double length = (rest[person.find("leftUpperLeg").value()] - rest[person.find("leftToesEnd").value()]).y();
+  RetargetOptions skinned;
+  skinned.skin = std::make_shared<BodySkin>(BodySkin{{Vec3(0, -length, 0)}, {small.find("leftUpperLeg").value()}});
+  EXPECT_FALSE(isSizedByTrunk(person, small, map, skinned.skin.get()));
+  EXPECT_NEAR(RetargetSetup(person, small, map, skinned).scale, 1, 1e-6);
 }
 
 // The origin is at the middle of the body.

@@ -17,18 +17,7 @@ using limber::testing::oddlyBuilt;
 using limber::testing::slideDistance;
 using limber::testing::turn;
 using limber::testing::walk;
-
-Skeleton withoutToes(const Skeleton& person) {
-  Skeleton toeless;
-  std::vector<Index> kept(person.joints.size());
-  for (Index j = 0; j < person.jointCount(); ++j) {
-    if (person.joints[j].name.ends_with("Toes")) continue;
-    kept[j] = toeless.jointCount();
-    toeless.joints.push_back(person.joints[j]);
-    if (toeless.joints.back().parent) toeless.joints.back().parent = kept[*toeless.joints.back().parent];
-  }
-  return toeless;
-}
+using limber::testing::without;
 
 // Crouches, jumps and crouches again, in a second and a half.
 PoseSequence jump(const Skeleton& person) {
@@ -104,7 +93,7 @@ TEST_F(Spacetime, FeetStayAboveTheGround) {
 
 // Feet without toes let go while the body still rises on them, and come down bent.
 TEST_F(Spacetime, AJumpIsAsHighAsItsJointAnglesHaveIt) {
-  const Skeleton toeless = withoutToes(person);
+  const Skeleton toeless = without(person, {"Toes"});
   const PoseSequence moves = jump(toeless);
   const RetargetSetup setup(toeless, odd, matchSkeletons(toeless, odd), {}, &moves);
   const auto heights = [&](const char* method) {

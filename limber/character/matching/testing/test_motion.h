@@ -15,6 +15,26 @@
 
 namespace limber::testing {
 
+// Without the joints whose names have one of these words; what is attached to them stays where it is. Of identities as rest rotations.
+inline Skeleton without(const Skeleton& person, const std::vector<std::string>& words) {
+  Skeleton less;
+  std::vector<std::optional<Index>> kept(person.joints.size());  // or the nearest above that is
+  const std::vector<Affine> globals = restGlobals(person);
+  for (Index j = 0; j < person.jointCount(); ++j) {
+    Joint joint = person.joints[j];
+    if (joint.parent) kept[j] = kept[*joint.parent];
+    const auto isNamed = [&](const std::string& word) { return joint.name.find(word) != std::string::npos; };
+    if (std::any_of(words.begin(), words.end(), isNamed)) continue;
+    joint.parent = kept[j];
+    const Vec3 above =
+        joint.parent ? globals[person.find(less.joints[*joint.parent].name).value()].translation() : Vec3(Vec3::Zero());
+    joint.rest.translation = globals[j].translation() - above;
+    kept[j] = less.jointCount();
+    less.joints.push_back(joint);
+  }
+  return less;
+}
+
 // The practice humanoid (T-pose, all rotations identities) walks forward, its standing foot exactly still on the
 // ground, while every joint of trunk, arms and hands turns.
 inline PoseSequence walk(const Skeleton& person, std::size_t frames = 120, double framesPerSecond = 60) {
