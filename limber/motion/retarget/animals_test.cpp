@@ -70,6 +70,35 @@ TEST(RetargetAnimals, LegsReachPawsOnARootOfTheirOwn) {
   }
 }
 
+// The paws follow hands and feet, which have no path of their own, and so ride on the shins.
+TEST(RetargetAnimals, PawsOnARootOfTheirOwnGoWithLegsThatFollowOtherLimbs) {
+  const Skeleton person = practiceHumanoid(), animal = onTheGround(quadruped(0.5), kPaws);
+  const PoseSequence motion = limber::testing::walk(person);
+  const SkeletonMap map = matchSkeletons(person, animal, true);
+  ASSERT_TRUE(map.unlikeBodies);
+  const RetargetSetup setup(person, animal, map, {}, &motion);
+  const auto shins = [&](const Pose& pose) {
+    std::vector<double> lengths;
+    for (const std::string& paw : kPaws) {
+      const Index end = animal.find(paw).value(), shin = animal.find(paw.substr(0, paw.size() - 5) + "Two").value();
+      const std::vector<Affine> globals = poseGlobals(animal, pose);
+      lengths.push_back((globals[end].translation() - globals[shin].translation()).norm());
+    }
+    return lengths;
+  };
+  const std::vector<double> rest = shins(restPose(animal));
+  for (const RetargetMethod& method : retargetMethods()) {
+    SCOPED_TRACE(method.name);
+    const PoseSequence result = retargetFrames(method, setup, motion);
+    const Index hips = animal.find("b0").value();
+    EXPECT_GT((result.poses.back().locals[hips].translation - result.poses.front().locals[hips].translation).norm(), 1);
+    for (const Pose& pose : result.poses) {
+      const std::vector<double> lengths = shins(pose);
+      for (std::size_t paw = 0; paw < rest.size(); ++paw) ASSERT_NEAR(lengths[paw], rest[paw], 1e-6) << kPaws[paw];
+    }
+  }
+}
+
 // One paw on a root of its own is lifted at once: it rises in the result as it does, scaled, and the others stay.
 TEST(RetargetAnimals, LiftedPawsOnRootsOfTheirOwnGoTheirOwnWay) {
   const std::vector<std::string> paws = {"b0LeftThree", "b0RightThree", "b1LeftThree", "b1RightThree"};

@@ -17,7 +17,7 @@ using limber::testing::oddlyBuilt;
 using limber::testing::slideDistance;
 using limber::testing::turn;
 using limber::testing::walk;
-using limber::testing::without;
+using limber::testing::withoutToes;
 
 // Crouches, jumps and crouches again, in a second and a half.
 PoseSequence jump(const Skeleton& person) {
@@ -93,7 +93,7 @@ TEST_F(Spacetime, FeetStayAboveTheGround) {
 
 // Feet without toes let go while the body still rises on them, and come down bent.
 TEST_F(Spacetime, AJumpIsAsHighAsItsJointAnglesHaveIt) {
-  const Skeleton toeless = without(person, {"Toes"});
+  const Skeleton toeless = withoutToes(person);
   const PoseSequence moves = jump(toeless);
   const RetargetSetup setup(toeless, odd, matchSkeletons(toeless, odd), {}, &moves);
   const auto heights = [&](const char* method) {

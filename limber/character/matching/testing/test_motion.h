@@ -153,17 +153,8 @@ inline Skeleton withHocks(Skeleton person) {
 }
 
 // Ankles are the last joints of its legs.
-inline Skeleton withoutToes(const Skeleton& skeleton) {
-  Skeleton shorter;
-  std::vector<Index> kept(skeleton.jointCount());
-  for (Index j = 0; j < skeleton.jointCount(); ++j) {
-    Joint joint = skeleton.joints[j];
-    if (joint.name == "leftToes" || joint.name == "rightToes") continue;
-    kept[j] = shorter.jointCount();
-    if (joint.parent) joint.parent = kept[*joint.parent];
-    shorter.joints.push_back(joint);
-  }
-  return shorter;
+inline Skeleton withoutToes(const Skeleton& person) {
+  return without(person, {"Toes"});
 }
 
 // As if the joints' names said nothing.

@@ -38,9 +38,21 @@ void RootPositioner::findLoose() {
     if (leg.target.carrier) addLoose({leg.target.end, *leg.target.carrier, true});
   }
   // On the same body what is loose moves as its partner does.
-  if (setup_.rootFollows != RootFollows::kPelvis || setup_.sameBody) return;
+  const bool hasLegs = setup_.rootFollows != RootFollows::kPelvis && !setup_.animalLegs.empty();
+  if (hasLegs || setup_.sameBody || !setup_.map.find(body_part::kPelvis)) return;
   const std::vector<Vec3>& rest = setup_.targetNeutral.restPositions;
-  for (const LooseJoint& loose : looseJoints(*setup_.target, setup_.map, MapSide::kTarget, rest)) addLoose(loose);
+  for (const LooseJoint& loose : looseJoints(*setup_.target, setup_.map, MapSide::kTarget, rest)) {
+    if (setup_.rootFollows == RootFollows::kPelvis || isAttached(loose)) addLoose(loose);
+  }
+}
+
+// Whether the partner of a matched joint is below the source's hips, and so has no path of its own to follow.
+bool RootPositioner::isAttached(const LooseJoint& loose) const {
+  const Index hips = setup_.map.find(body_part::kPelvis)->source.front();
+  const auto follows = [&](const JointMatch& match) {
+    return match.target.front() == loose.joint && isAncestorOrSelf(*setup_.source, hips, match.source.front());
+  };
+  return std::any_of(setup_.map.matches.begin(), setup_.map.matches.end(), follows);
 }
 
 void RootPositioner::addLoose(const LooseJoint& joint) {
@@ -143,7 +155,10 @@ void RootPositioner::apply(const Pose& source, const BodyFrame& sourceFrame, Pos
     placeEach(source, sourceFrame, target, frame);
     setup_.targetKinematics.update(target, frame);
   }
-  if (setup_.rootFollows == RootFollows::kEachJoint) return;
+  if (setup_.rootFollows == RootFollows::kEachJoint) {
+    if (setup_.animalLegs.empty()) settleLoose(target, frame);
+    return;
+  }
   const Vec3 there = setup_.positionOf(pelvisOf(setup_.map, MapSide::kSource, sourceFrame.positions));
   movePelvis(there - pelvisOf(setup_.map, MapSide::kTarget, frame.positions), target, frame);
 }

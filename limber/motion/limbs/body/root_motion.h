@@ -17,7 +17,8 @@ Vec3 middleOf(std::span<const Index> joints, const std::vector<Vec3>& positions)
 // People: the hips' translation brings the pelvis to its position; on the same body (RetargetSetup::sameBody) every
 // joint is displaced from rest as its partner is, as well. Others: every matched joint is displaced from rest as its
 // partner, scaled; in quadrupeds that were matched by form only the hindquarters are. Loose joints (looseJoints; of
-// animals the feet that ride on their shins) are put where their carriers have them, except on the same body.
+// animals feet that ride on their shins, and where no legs are solved for what follows a joint of the source's body) are
+// put where their carriers have them, except on the same body.
 class RootPositioner {
  public:
   explicit RootPositioner(const RetargetSetup& setup);
@@ -55,6 +56,7 @@ class RootPositioner {
   void findCarried();
   void placeEach(const Pose& source, const BodyFrame& sourceFrame, Pose& target, const BodyFrame& frame) const;
   void findLoose();
+  bool isAttached(const LooseJoint& loose) const;
   void addLoose(const LooseJoint& loose);
 
   const RetargetSetup& setup_;
