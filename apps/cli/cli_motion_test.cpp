@@ -810,5 +810,14 @@ TEST_F(Cli, RetargetRefusesWithOneLineAndLeavesNoFile) {
   EXPECT_EQ(files(), before);
 }
 
+TEST_F(Cli, ASolverWithoutEffectIsRefused) {
+  for (const std::string method : {"spacetime", "aligned", "copy"}) {
+    const Result result =
+        run({"retarget", "hero.glb", "walk.bvh", "--method", method, "--solver", "fabrik", "-o", "out.glb"});
+    expectOneLine(result, 2);
+    EXPECT_THAT(result.error, HasSubstr("--solver: has no effect with --method " + method + "; it is for limb-ik"));
+  }
+}
+
 }  // namespace
 }  // namespace limber

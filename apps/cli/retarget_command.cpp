@@ -69,6 +69,10 @@ std::optional<Adapter> findProgram(const RetargetArguments& options) {
     }
   }
   options.adapters.refuseUnused({options.retarget.method}, program.has_value());
+  if (!program && options.command->count("--solver") > 0 && !findRetargetMethod(options.retarget.method).usesSolver) {
+    throw CLI::ValidationError("--solver", fmt::format("has no effect with --method {}; it is for {}",
+                                                       options.retarget.method, retargetMethodsWithSolver()));
+  }
   return program;
 }
 
@@ -323,7 +327,10 @@ void addOptions(CLI::App& command, const std::shared_ptr<RetargetArguments>& opt
       ->check(numberIn(0, 1))
       ->type_name("D")
       ->capture_default_str();
-  command.add_option("--solver", retarget.solver, "how limbs reach; limber pose --help lists the solvers")
+  command
+      .add_option(
+          "--solver", retarget.solver,
+          fmt::format("how limbs reach, with {}; limber pose --help lists the solvers", retargetMethodsWithSolver()))
       ->type_name("NAME")
       ->capture_default_str();
   command.add_flag("--no-contacts", options->noContacts,

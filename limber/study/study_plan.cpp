@@ -81,11 +81,11 @@ class PlanMethods {
     if (!adapterOf(name, AdapterKind::kRetarget)) findRetargetMethod(name);
   }
   bool isProgram(std::string_view rigger) const { return adapterOf(rigger, AdapterKind::kRig).has_value(); }
-  // By each solver, or by none where the method solves for no limbs, or is a program that decides for itself.
+  // By each solver, or by none where the method uses none, or is a program that decides for itself.
   std::vector<RetargetCombination> retargetCombinations(const std::string& method,
                                                         const std::vector<std::string>& solvers) const {
     if (const auto adapter = adapterOf(method, AdapterKind::kRetarget)) return {{method, {}, {adapter->file}}};
-    if (!findRetargetMethod(method).solvesLimbs) return {{method, {}}};
+    if (!findRetargetMethod(method).usesSolver) return {{method, {}}};
     std::vector<RetargetCombination> combinations;
     for (const std::string& solver : solvers) combinations.push_back({method, solver});
     return combinations;
@@ -278,7 +278,7 @@ std::vector<RetargetCombination> retargetPairs(const JsonView& pairs, const Plan
         methods.retargetCombinations(method, {solver.exists() ? requiredText(solver) : std::string(kUsualSolver)})
             .front();
     if (solver.exists() && one.solver.empty()) {
-      solver.fail(fmt::format("is of no use: '{}' solves for no limbs", method));
+      solver.fail(fmt::format("is of no use: '{}' uses no solver, but {}", method, retargetMethodsWithSolver()));
     }
     const auto isSame = [&](const RetargetCombination& other) {
       return other.method == one.method && other.solver == one.solver;

@@ -36,7 +36,7 @@ struct RigPlan {
 };
 
 struct RetargetCombination {
-  std::string method, solver;                        // solver: empty where the method solves for no limbs
+  std::string method, solver;                        // solver: empty where the method uses none
   std::vector<std::filesystem::path> adapters = {};  // the file of a program of the user's
 };
 

@@ -101,10 +101,10 @@ TEST(StudyPlan, AllStandsForAllThereAre) {
   const StudyPlan plan = studyPlanFromJson(rigPlan(R"(, "riggers": ["all"], "skinning": ["all"])"));
   EXPECT_EQ(plan.rig.combinations.size(), riggerMethods().size() * weightMethods().size());
   const StudyPlan moving = studyPlanFromJson(
-      R"({"limber_study": 1, "retarget": {"characters": ["c"], "motions": ["m"], "methods": ["limb-ik", "copy"],
+      R"({"limber_study": 1, "retarget": {"characters": ["c"], "motions": ["m"], "methods": ["limb-ik", "spacetime", "copy"],
           "solvers": ["all"]}})");
-  // Copying local rotations solves for nothing: once, without a solver.
-  ASSERT_EQ(moving.retarget.combinations.size(), ikMethods().size() + 1);
+  // The others use no solver: once each.
+  ASSERT_EQ(moving.retarget.combinations.size(), ikMethods().size() + 2);
   EXPECT_EQ(moving.retarget.combinations.back().solver, "");
 }
 

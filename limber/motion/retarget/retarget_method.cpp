@@ -18,12 +18,12 @@ std::span<const RetargetMethod> retargetMethods() {
       {"limb-ik", "joints turn as the source's; feet stay planted, hands touch what they touched",
        "Koerner; Feng et al.: Automating the Transfer of a Generic Set "
        "of Behaviors onto a Virtual Character, 2012",
-       &makeLimbIk, nullptr, true},
+       &makeLimbIk, nullptr, true, true},
       {"spacetime", "the smallest smooth change over the whole motion that keeps feet planted and hands touching",
-       "Gleicher: Retargetting motion to new characters, 1998", &makeAligned, &refineSpacetime, true},
+       "Gleicher: Retargetting motion to new characters, 1998", &makeAligned, &refineSpacetime, true, false},
       {"aligned", "joints turn in the world as the source's, against a neutral pose that both share",
-       "Tang et al. 2012; Feng et al. 2012", &makeAligned, nullptr, false},
-      {"copy", "local rotations as they are; right for like skeletons only", "", &makeCopy, nullptr, false},
+       "Tang et al. 2012; Feng et al. 2012", &makeAligned, nullptr, false, false},
+      {"copy", "local rotations as they are; right for like skeletons only", "", &makeCopy, nullptr, false, false},
   }};
   return kMethods;
 }
@@ -37,6 +37,14 @@ const RetargetMethod& findRetargetMethod(std::string_view name) {
   }
   throw Error(ErrorCode::kBadArgument, fmt::format("there is no retargeting method '{}'", name), "",
               fmt::format("there are: {}", names));
+}
+
+std::string retargetMethodsWithSolver() {
+  std::string names;
+  for (const RetargetMethod& method : retargetMethods()) {
+    if (method.usesSolver) names += (names.empty() ? "" : ", ") + std::string(method.name);
+  }
+  return names;
 }
 
 }  // namespace limber

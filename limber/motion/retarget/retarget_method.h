@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "limber/character/matching/retarget_setup.h"
@@ -28,6 +29,7 @@ struct RetargetMethod {
   // What needs the whole motion: improves what the frames gave; null for methods that do not.
   void (*refine)(const RetargetSetup& setup, const PoseSequence& source, PoseSequence& target);
   bool solvesLimbs;  // then whole motions are smoothed (motion_smoothing.h)
+  bool usesSolver;   // RetargetOptions::solver
 
   bool streams() const { return refine == nullptr; }
 };
@@ -35,5 +37,7 @@ struct RetargetMethod {
 std::span<const RetargetMethod> retargetMethods();
 // Throws Error kBadArgument that lists the names there are.
 const RetargetMethod& findRetargetMethod(std::string_view name);
+// The names of those that use a solver, "a, b".
+std::string retargetMethodsWithSolver();
 
 }  // namespace limber
