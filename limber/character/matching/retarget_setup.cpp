@@ -224,7 +224,7 @@ Pose restOf(const Skeleton& source, std::span<const Pose> motion, const Skeleton
 
 // A map of the hips alone, or joints that all lie at one position, leave nothing to scale by.
 void checkSize(double size, const char* whose, const SkeletonMap& map) {
-  if (size > 0) return;
+  if (size > 0 && std::isfinite(size)) return;
   throw KnownError(
       ErrorKind::kTooFewMatched,
       {ErrorCode::kBadData, fmt::format("the matched joints do not tell how large the {}'s body is", whose),
