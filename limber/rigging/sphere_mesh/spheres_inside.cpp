@@ -1,12 +1,13 @@
 #include "limber/rigging/sphere_mesh/spheres_inside.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "limber/core/parallel.h"
+#include "limber/core/text/numbers.h"
 #include "limber/geometry/mesh/areas.h"
 #include "limber/geometry/mesh/bvh.h"
-#include "limber/geometry/mesh/model_box.h"
-#include "limber/geometry/mesh/winding_number.h"
 
 namespace limber {
 
@@ -20,17 +21,56 @@ double heightOver(const MirrorPlane& plane, const Vec3& point) {
   return plane.normal.dot(point) - plane.offset;
 }
 
+// Of a triangle whose corners are seen from the eye (Van Oosterom, Strackee 1983).
+double solidAngleOf(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const double la = a.norm(), lb = b.norm(), lc = c.norm();
+  return 2 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+}
+
+// Which points the surface winds round, by the sum of the triangles' solid angles. One pass for the few points that
+// there are takes less than a tree of triangles (WindingNumber).
+std::vector<bool> areInside(const TriMesh& mesh, std::span<const Vec3> points) {
+  constexpr double kFar = 10;  // times the longer of two sides: there an area vector is right within half a percent
+  constexpr std::size_t kRange = 65536;
+  const std::size_t ranges = (mesh.triangles.size() + kRange - 1) / kRange;
+  std::vector<double> angles(ranges * points.size(), 0);
+  parallelFor(ranges, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t range = begin; range < end; ++range) {
+      double* const sums = angles.data() + range * points.size();
+      for (std::size_t t = range * kRange; t < std::min(mesh.triangles.size(), (range + 1) * kRange); ++t) {
+        const Triangle& corners = mesh.triangles[t];
+        const Vec3 a = mesh.position(corners[0]), b = mesh.position(corners[1]), c = mesh.position(corners[2]);
+        const Vec3 middle = (a + b + c) / 3, area = 0.5 * (b - a).cross(c - a);
+        const double far = kFar * kFar * std::max((b - a).squaredNorm(), (c - a).squaredNorm());
+        for (std::size_t i = 0; i < points.size(); ++i) {
+          const Vec3 away = middle - points[i];
+          const double squared = away.squaredNorm();
+          sums[i] += squared > far ? away.dot(area) / (squared * std::sqrt(squared))
+                                   : solidAngleOf(a - points[i], b - points[i], c - points[i]);
+        }
+      }
+    }
+  });
+  std::vector<bool> result;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    double sum = 0;
+    for (std::size_t range = 0; range < ranges; ++range) sum += angles[range * points.size() + i];
+    result.push_back(std::abs(sum) > 2 * kPi);
+  }
+  return result;
+}
+
 class SphereMover {
  public:
-  SphereMover(const TriMesh& mesh, std::span<const Index> sphereOf)
-      : mesh_(mesh), sphereOf_(sphereOf), size_(modelBox(mesh).longestSide()), winding_(mesh) {}
+  SphereMover(const TriMesh& mesh, std::span<const Index> sphereOf) : mesh_(mesh), sphereOf_(sphereOf) {}
 
-  bool isInside(const Vec3& point) const { return std::abs(winding_.at(point)) > 0.5; }
+  bool isInside(const Vec3& point) const { return areInside(mesh_, std::span(&point, 1))[0]; }
 
   // The largest ball that touches the surface from within near the middle of the sphere's part; of one that has to stay
   // on the plane only where the surface meets that.
   std::optional<Sphere> inPartOf(Index sphere, const std::optional<MirrorPlane>& plane) {
     std::vector<Index> triangles;
+    Box box;
     Vec3 middle = Vec3::Zero();
     double area = 0;
     for (Index t = 0; t < mesh_.triangleCount(); ++t) {
@@ -42,7 +82,9 @@ class SphereMover {
         middle += third * mesh_.position(v);
         area += third;
       }
-      if (isOfSphere && (!plane || meets(*plane, t))) triangles.push_back(t);
+      if (!isOfSphere) continue;
+      for (const Index v : mesh_.triangles[t]) box.add(mesh_.position(v));
+      if (!plane || meets(*plane, t)) triangles.push_back(t);
     }
     if (triangles.empty()) return std::nullopt;
     const SurfacePoint nearest = Bvh(mesh_, triangles).nearestPoint(middle / area);
@@ -50,8 +92,9 @@ class SphereMover {
     const Vec3 a = mesh_.position(corners[0]), b = mesh_.position(corners[1]), c = mesh_.position(corners[2]);
     const Vec3 start = nearest.position + kTowardsMiddle * ((a + b + c) / 3 - nearest.position);
     const Vec3 normal = (b - a).cross(c - a).normalized();
+    const Bvh around = surfaceAround(start, box.diagonal());
     for (const Vec3& inwards : {Vec3(-normal), normal}) {
-      const Sphere moved = ballBehind(start, inwards);
+      const Sphere moved = ballBehind(start, inwards, 0.5 * box.diagonal(), around);
       if (isInside(moved.center)) return moved;
     }
     return std::nullopt;
@@ -68,13 +111,23 @@ class SphereMover {
     return isBelow && isAbove;
   }
 
+  // What a ball that touches the surface at `center` and is that wide can meet.
+  Bvh surfaceAround(const Vec3& center, double width) const {
+    std::vector<Index> triangles;
+    for (Index t = 0; t < mesh_.triangleCount(); ++t) {
+      Box box;
+      for (const Index v : mesh_.triangles[t]) box.add(mesh_.position(v));
+      if ((center.cwiseMax(box.min).cwiseMin(box.max) - center).squaredNorm() <= width * width) triangles.push_back(t);
+    }
+    return Bvh(mesh_, triangles);
+  }
+
   // Shrinks a ball that touches the surface at `start` until it meets no other point of the surface.
-  Sphere ballBehind(const Vec3& start, const Vec3& inwards) {
-    if (!surface_) surface_.emplace(mesh_);
-    Sphere ball = {start, 0.5 * size_};
+  static Sphere ballBehind(const Vec3& start, const Vec3& inwards, double radius, const Bvh& surface) {
+    Sphere ball = {start, radius};
     for (int step = 0; step < kMaxShrinks; ++step) {
       ball.center = start + ball.radius * inwards;
-      const SurfacePoint nearest = surface_->nearestPoint(ball.center);
+      const SurfacePoint nearest = surface.nearestPoint(ball.center);
       if (nearest.distance > (1 - kTouches) * ball.radius) break;
       const Vec3 chord = nearest.position - start;
       ball.radius = chord.squaredNorm() / (2 * chord.dot(inwards));
@@ -84,9 +137,6 @@ class SphereMover {
 
   const TriMesh& mesh_;
   std::span<const Index> sphereOf_;
-  double size_;
-  WindingNumber winding_;
-  std::optional<Bvh> surface_;  // once a sphere has to be moved
 };
 
 Vec3 mirrored(const Vec3& point, const MirrorPlane& plane) {
@@ -105,9 +155,12 @@ void moveSpheresInside(SphereMeshLevel& level, const TriMesh& mesh, std::span<co
                        const std::optional<MirrorPlane>& mirror) {
   if (mesh.triangles.empty()) return;
   SphereMover mover(mesh, sphereOf);
+  std::vector<Vec3> centers;
+  for (const Sphere& sphere : level.spheres) centers.push_back(sphere.center);
+  const std::vector<bool> inside = areInside(mesh, centers);
   for (Index h = 0; h < level.spheres.size(); ++h) {
     const Index image = level.images.empty() ? kNoIndex : level.images[h];
-    if (image < h || mover.isInside(level.spheres[h].center)) continue;
+    if (image < h || inside[h]) continue;
     const bool isOnPlane = image == h;
     std::optional<Sphere> moved = mover.inPartOf(h, isOnPlane ? mirror : std::nullopt);
     if (moved && isOnPlane) {

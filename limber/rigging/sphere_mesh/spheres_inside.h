@@ -19,7 +19,7 @@ namespace limber {
 // level     of a sphere mesh of `mesh`
 // sphereOf  #V, SphereMesh::vertexHandles() of that level
 // mirror    SphereMesh::mirror()
-// Cost: O(#F log #F).
+// Cost: O(#spheres #F), and O(#F log #F) where one has to be moved.
 void moveSpheresInside(SphereMeshLevel& level, const TriMesh& mesh, std::span<const Index> sphereOf,
                        const std::optional<MirrorPlane>& mirror);
 
