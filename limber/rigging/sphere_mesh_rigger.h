@@ -30,7 +30,8 @@ Skeleton handleSkeleton(const SphereMeshLevel& level, const HandleTree& tree);
 void checkHandles(const TriMesh& mesh, const RigOptions& options);
 
 // Builds the sphere mesh, suggests counts, and makes the skeleton of options.handles handles (default: the best
-// suggestion); the region of a joint is what its sphere represents. Throws Error kBadArgument, before it computes, where there are fewer vertices than handles.
+// suggestion); the region of a joint is what its sphere represents. Throws Error kBadArgument, before it computes, where
+// there are fewer vertices than handles.
 AutoRig rigWithSphereMesh(const TriMesh& mesh, const RigOptions& options, Progress& progress);
 
 }  // namespace limber

@@ -228,4 +228,35 @@ double WindingNumber::exactAt(const Vec3& point) const {
   return sum / (2 * kPi);
 }
 
+std::vector<bool> areInside(const TriMesh& mesh, std::span<const Vec3> points) {
+  constexpr double kFar = 10;  // times the longer of two sides: there an area vector is right within half a percent
+  constexpr std::size_t kRange = 65536;
+  const std::size_t ranges = (mesh.triangles.size() + kRange - 1) / kRange;
+  std::vector<double> angles(ranges * points.size(), 0);
+  parallelFor(ranges, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t range = begin; range < end; ++range) {
+      double* const sums = angles.data() + range * points.size();
+      for (std::size_t t = range * kRange; t < std::min(mesh.triangles.size(), (range + 1) * kRange); ++t) {
+        const Triangle& corners = mesh.triangles[t];
+        const Vec3 a = mesh.position(corners[0]), b = mesh.position(corners[1]), c = mesh.position(corners[2]);
+        const Vec3 middle = (a + b + c) / 3, area = 0.5 * (b - a).cross(c - a);
+        const double far = kFar * kFar * std::max((b - a).squaredNorm(), (c - a).squaredNorm());
+        for (std::size_t i = 0; i < points.size(); ++i) {
+          const Vec3 away = middle - points[i];
+          const double squared = away.squaredNorm();
+          sums[i] += squared > far ? 0.5 * away.dot(area) / (squared * std::sqrt(squared))
+                                   : halfSolidAngle(a - points[i], b - points[i], c - points[i]);
+        }
+      }
+    }
+  });
+  std::vector<bool> result;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    double sum = 0;
+    for (std::size_t range = 0; range < ranges; ++range) sum += angles[range * points.size() + i];
+    result.push_back(std::abs(sum) > kPi);
+  }
+  return result;
+}
+
 }  // namespace limber
